@@ -1,0 +1,1 @@
+"""Data of posopt: robots, tools, beams, cells and example paths (no code)."""

@@ -1,0 +1,1 @@
+"""The model: frozen data, validated when made, without any algorithm of planning."""
