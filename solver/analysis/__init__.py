@@ -1,1 +1,1 @@
-"""TODO analysis."""
+"""Analysis: results, metrics, references to compare with, and the diagnosis of failures."""

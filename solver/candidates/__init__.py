@@ -1,1 +1,1 @@
-"""TODO candidates."""
+"""Candidates: generation, filters and the explanation of every verdict."""

@@ -1,1 +1,1 @@
-"""TODO cli."""
+"""The command line: thin, in millimetres and degrees, with one sentence per error."""

@@ -1,1 +1,1 @@
-"""TODO collision."""
+"""Collision: shapes packed for kernels, certified distances, and the scene of a problem."""

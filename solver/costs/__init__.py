@@ -1,1 +1,1 @@
-"""TODO costs."""
+"""Costs of nodes and edges of the layered graph."""

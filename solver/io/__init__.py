@@ -1,1 +1,1 @@
-"""TODO io."""
+"""Files: importers of paths, post-processors, readers and safe writing."""

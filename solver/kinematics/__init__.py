@@ -1,1 +1,1 @@
-"""TODO kinematics."""
+"""Forward and inverse kinematics, Jacobian and the controller's CONFIG, all of pendant joints."""

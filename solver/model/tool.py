@@ -37,6 +37,7 @@ class Tool:
     tcp: FloatArray
     mass: float
     bodies: tuple[ToolBody, ...]
+    assumptions: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "tcp", frozen(self.tcp, (4, 4)))

@@ -1,0 +1,13 @@
+#!/bin/bash
+# Sets everything up and runs the tests; arguments go to pytest (`bash scripts/run_tests.sh -n 2`).
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+bash scripts/setup.sh --test
+
+# Tests of the window draw on a display in memory where there is one to be had.
+display=()
+if command -v xvfb-run >/dev/null && command -v xauth >/dev/null; then
+    display=(xvfb-run --auto-servernum --server-args="-screen 0 1280x1024x24")
+fi
+exec "${display[@]}" .venv/bin/python -m pytest "$@"

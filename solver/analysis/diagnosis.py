@@ -1,0 +1,93 @@
+"""When there is no sequence: which waypoints or steps break it, why, and by how much."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver.candidates.explain import Explanation, explain
+from solver.candidates.generate import CandidateSet
+from solver.candidates.outcomes import Outcome
+from solver.errors import PlanningError
+from solver.search.graph import LayeredGraph
+from solver.search.reachability import Cut, diagnose_cut
+from solver.units import DEG_PER_RAD
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EmptyLayer:
+    """A waypoint without any feasible candidate.
+
+    `rejected` counts the branch candidates by the filter that rejected them; `nearest` is the
+    candidate that came closest to passing the filter that rejected most of those that got
+    furthest.
+    """
+
+    waypoint: int
+    rejected: Mapping[Outcome, int]
+    nearest: Explanation
+
+    def __str__(self) -> str:
+        failed = [one for one in self.nearest.filters if not one.passed]
+        worst = min(failed, key=lambda one: one.margin)
+        counts = ", ".join(f"{count} {kind.label}" for kind, count in self.rejected.items())
+        return (
+            f"waypoint {self.waypoint + 1} has no feasible pose ({counts}); nearest is lean "
+            f"{self.nearest.lean * DEG_PER_RAD:g} deg on branch {self.nearest.branch}, where "
+            f"{worst.subject} misses by {-worst.margin:.3g} {worst.unit} ({worst.filter.label})"
+        )
+
+
+class InfeasiblePathError(PlanningError):
+    """No sequence: `empty` lists layers without candidates, `cut` where steps are too large."""
+
+    def __init__(self, empty: tuple[EmptyLayer, ...], waypoints: int, cut: Cut | None) -> None:
+        self.empty, self.cut = empty, cut
+        if empty:
+            more = f"; {waypoints - 1} more waypoints have none either" if waypoints > 1 else ""
+            advice = "try a wider lean range, all branches, or another place of the beam"
+            message = f"no sequence: {empty[0]}{more}; {advice}"
+        elif cut is not None:
+            message = f"no sequence: {cut}; try a finer path, a lower feed or wider step limits"
+        else:
+            message = "no sequence under the asked clearance; try a smaller safety distance"
+        super().__init__(message)
+
+
+def no_sequence(
+    candidates: CandidateSet, graph: LayeredGraph, explained: int = 3
+) -> InfeasiblePathError:
+    """Say why the graph has no sequence; the first few empty layers are looked into."""
+    empty = np.flatnonzero(np.diff(graph.offsets) == 0)
+    if len(empty):
+        layers = tuple(_empty_layer(candidates, int(w)) for w in empty[:explained])
+        return InfeasiblePathError(layers, len(empty), None)
+    return InfeasiblePathError((), 0, diagnose_cut(graph))
+
+
+def _empty_layer(candidates: CandidateSet, waypoint: int) -> EmptyLayer:
+    outcome = candidates.outcome[waypoint]
+    counts = np.bincount(outcome.ravel(), minlength=len(Outcome))
+    furthest = Outcome(int(outcome.max()))
+    rejected = {kind: int(counts[kind]) for kind in Outcome if counts[kind]}
+    tried = np.argwhere(outcome == furthest)
+    explanations = (
+        explain(
+            candidates.problem,
+            waypoint,
+            float(candidates.orientations[o, 0]),
+            int(candidates.branches[slot]),
+            lead=float(candidates.orientations[o, 1]),
+            spin=float(candidates.orientations[o, 2]),
+            scene=candidates.scene,
+        )
+        for o, slot in tried[:: max(1, len(tried) // 200)]
+    )
+    return EmptyLayer(waypoint, rejected, max(explanations, key=_least_margin))
+
+
+def _least_margin(explanation: Explanation) -> float:
+    """The worst margin among the failed filters, for comparing candidates of one outcome."""
+    return min((one.margin for one in explanation.filters if not one.passed), default=0.0)

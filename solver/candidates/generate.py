@@ -1,0 +1,220 @@
+"""Candidates of a problem: waypoint x lean x lead x spin x branch x turn, filtered."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.candidates.kernels_candidates import evaluate_poses, expand_nodes
+from solver.candidates.meshes import MeshChecker
+from solver.candidates.outcomes import Outcome
+from solver.collision.scene import CollisionScene, build_scene
+from solver.errors import ModelError
+from solver.kinematics.arm import representative_capacity
+from solver.model.problem import PlanningProblem
+from solver.model.settings import PlanningSettings, Turns
+from solver.progress import Monitor, SilentMonitor, checkpoint
+from solver.transforms import (
+    FloatArray,
+    IntArray,
+    inverse,
+    rigid,
+    rotation_x,
+    rotation_y,
+    rotation_z,
+)
+
+POSES_PER_CALL = 256
+"""Tool poses a kernel call evaluates, so that it returns within some 20 ms."""
+
+MEMORY_LIMIT = 400_000_000
+"""Largest number of branch candidates that are held at once times 100 [byte]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Nodes:
+    """Feasible candidates in order of waypoint, orientation, branch and turn.
+
+    `candidate` (k, 4) holds waypoint, orientation, branch slot and turn of every node;
+    `model` and `pendant` (k, 6) its joints [rad]; `clearance` (k,) [m]; `offsets` (n + 1,)
+    the first node of every waypoint.
+    """
+
+    candidate: NDArray[np.int32]
+    model: FloatArray
+    pendant: FloatArray
+    clearance: FloatArray
+    offsets: IntArray
+
+    def __len__(self) -> int:
+        return len(self.clearance)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CandidateSet:
+    """Every candidate of a problem with its outcome; rejected ones are kept.
+
+    Attributes
+    ----------
+    orientations : (o, 3) array
+        Lean, lead, spin of each orientation [rad], lean slowest.
+    branches : (b,) array
+        Branch number of each slot.
+    joints : (n, o, b, 6) array
+        Model angles of each branch [rad].
+    outcome : (n, o, b) array
+        Values of :class:`Outcome`.
+    turns : (n, o, b) array
+        Number of representatives inside the limits.
+    clearance : (n, o, b) array
+        Clearance d [m]; nan where an earlier filter rejected.
+    """
+
+    problem: PlanningProblem
+    scene: CollisionScene
+    orientations: FloatArray
+    branches: IntArray
+    joints: FloatArray
+    outcome: NDArray[np.uint8]
+    turns: NDArray[np.uint8]
+    clearance: FloatArray
+    nodes: Nodes
+
+    def counts(self) -> dict[Outcome, int]:
+        """Number of branch candidates of every outcome."""
+        found = np.bincount(self.outcome.ravel(), minlength=len(Outcome))
+        return {outcome: int(found[outcome]) for outcome in Outcome}
+
+    @property
+    def lean(self) -> FloatArray:
+        """(k,) lean of every node [rad]."""
+        return self.orientations[self.nodes.candidate[:, 1], 0]
+
+
+def orientations(settings: PlanningSettings) -> FloatArray:
+    """(o, 3) lean, lead and spin of all orientations, lean slowest [rad]."""
+    grid = np.meshgrid(
+        settings.lean.angles(), settings.lead.angles(), settings.spin.angles(), indexing="ij"
+    )
+    return np.column_stack([axis.ravel() for axis in grid])
+
+
+def tool_rotation(lean: float, lead: float, spin: float) -> FloatArray:
+    """(3, 3) reference_from_tool: Ry(lean) Rx(lead) Rz(spin)."""
+    return rotation_y(lean) @ rotation_x(lead) @ rotation_z(spin)
+
+
+def reference_from_wrist(problem: PlanningProblem, angles: FloatArray) -> FloatArray:
+    """(o, 3, 4) pose of the wrist in the waypoint's reference frame for every orientation."""
+    tcp_from_wrist = inverse(problem.robot.flange @ problem.tool.tcp)
+    return np.array([(rigid(tool_rotation(*row)) @ tcp_from_wrist)[:3] for row in angles])
+
+
+def touch_numbers(problem: PlanningProblem, scene: CollisionScene) -> IntArray:
+    """(n,) number of the workpiece group that each waypoint's pass touches, -1 for none."""
+    numbers = [scene.touch_number(one.touches) for one in problem.toolpath.passes]
+    return np.array(numbers, np.int64)[problem.toolpath.pass_index]
+
+
+def generate(problem: PlanningProblem, monitor: Monitor | None = None) -> CandidateSet:
+    """Solve and filter every candidate of the problem."""
+    monitor = monitor or SilentMonitor()
+    settings = problem.settings
+    scene = build_scene(problem)
+    angles = orientations(settings)
+    branches = np.array(settings.branches, np.int64)
+    shape = (len(problem.toolpath), len(angles), len(branches))
+    if np.prod(shape, dtype=np.float64) > MEMORY_LIMIT / 100:
+        raise ModelError(
+            f"{shape[0]} waypoints x {shape[1]} orientations x {shape[2]} branches are more than "
+            f"{MEMORY_LIMIT // 100:,} candidates; use a larger step or fewer branches"
+        )
+    touch = touch_numbers(problem, scene)
+    joints = np.empty((*shape, 6))
+    outcome = np.empty(shape, np.uint8)
+    turns = np.empty(shape, np.uint8)
+    clearance = np.empty(shape)
+    local = reference_from_wrist(problem, angles)
+    world = np.ascontiguousarray(problem.waypoint_poses[:, :3])
+    robot = problem.robot
+    limits = np.ascontiguousarray(problem.joint_limits)
+    space = np.empty((representative_capacity(problem.joint_limits), 6))
+    principal = settings.turns is Turns.PRINCIPAL
+    arm = np.array(robot.arm_lengths)
+    total = shape[0] * shape[1]
+    for begin in range(0, total, POSES_PER_CALL):
+        checkpoint(monitor, "candidates", begin, total)
+        evaluate_poses(
+            begin,
+            min(begin + POSES_PER_CALL, total),
+            world,
+            local,
+            touch,
+            arm,
+            robot.pendant_from_model,
+            limits,
+            robot.elbow_limits,
+            principal,
+            settings.manipulability,
+            scene.packed,
+            branches,
+            joints,
+            outcome,
+            clearance,
+            turns,
+            space,
+        )
+    if scene.meshes:
+        MeshChecker(scene).apply(joints, touch, arm, outcome, clearance, monitor)
+    nodes = _expand(problem, joints, outcome, turns, clearance, monitor)
+    for array in (joints, outcome, turns, clearance):
+        array.setflags(write=False)
+    return CandidateSet(
+        problem, scene, angles, branches, joints, outcome, turns, clearance, nodes
+    )
+
+
+def _expand(
+    problem: PlanningProblem,
+    joints: FloatArray,
+    outcome: NDArray[np.uint8],
+    turns: NDArray[np.uint8],
+    clearance: FloatArray,
+    monitor: Monitor,
+) -> Nodes:
+    kept = np.where(outcome == Outcome.FEASIBLE, turns, 0)
+    per_layer = kept.sum(axis=(1, 2), dtype=np.int64)
+    offsets = np.concatenate([[0], np.cumsum(per_layer)]).astype(np.int64)
+    count = int(offsets[-1])
+    model, pendant = np.empty((count, 6)), np.empty((count, 6))
+    node_clearance = np.empty(count)
+    candidate = np.empty((count, 4), np.int32)
+    robot = problem.robot
+    space = np.empty((representative_capacity(problem.joint_limits), 6))
+    total = outcome.shape[0] * outcome.shape[1]
+    row = 0
+    for begin in range(0, total, 16 * POSES_PER_CALL):
+        checkpoint(monitor, "nodes", begin, total)
+        row = expand_nodes(
+            begin,
+            min(begin + 16 * POSES_PER_CALL, total),
+            joints,
+            outcome,
+            clearance,
+            robot.pendant_from_model,
+            robot.model_from_pendant,
+            np.ascontiguousarray(problem.joint_limits),
+            robot.elbow_limits,
+            problem.settings.turns is Turns.PRINCIPAL,
+            space,
+            row,
+            model,
+            pendant,
+            node_clearance,
+            candidate,
+        )
+    for array in (model, pendant, node_clearance, candidate, offsets):
+        array.setflags(write=False)
+    return Nodes(candidate, model, pendant, node_clearance, offsets)

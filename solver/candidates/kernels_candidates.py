@@ -1,0 +1,203 @@
+"""Kernels that solve, filter and expand candidates, a range of tool poses at a time."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from solver.collision.kernels_scene import check_pose
+from solver.kinematics.kernels_arm import (
+    forward_frames,
+    inverse_branches,
+    manipulability,
+    representatives,
+)
+
+_FEASIBLE = 0
+_UNREACHABLE = 1
+_JOINT_LIMIT = 2
+_SINGULAR = 3
+_COLLISION = 4
+_TURN = 2.0 * math.pi
+_TOLERANCE = 1e-12
+
+
+@njit(cache=True, nogil=True)
+def to_pendant(convention, model, pendant):
+    """Pendant joints in (-pi, pi] of model angles; `convention` is pendant_from_model (6, 6)."""
+    for r in range(6):
+        angle = 0.0
+        for c in range(6):
+            angle += convention[r, c] * model[c]
+        angle -= _TURN * math.ceil((angle - math.pi) / _TURN)
+        pendant[r] = angle
+
+
+@njit(cache=True, nogil=True)
+def elbow_fits(joints, elbow):
+    """Whether J2 + J3 lies inside the elbow's bounds."""
+    angle = joints[1] + joints[2]
+    return elbow[0] - _TOLERANCE <= angle <= elbow[1] + _TOLERANCE
+
+
+@njit(cache=True, nogil=True)
+def kept_representatives(pendant, limits, elbow, principal_only, space):
+    """Representatives inside limits and elbow bounds, moved to the front of `space`."""
+    count = representatives(pendant, limits, principal_only, space)
+    kept = 0
+    for k in range(count):
+        if elbow_fits(space[k], elbow):
+            if kept != k:
+                space[kept] = space[k]
+            kept += 1
+    return kept
+
+
+@njit(cache=True, nogil=True)
+def multiply(a, b, out):
+    """Product of two (3, 4) rigid transforms."""
+    for r in range(3):
+        for c in range(4):
+            out[r, c] = a[r, 0] * b[0, c] + a[r, 1] * b[1, c] + a[r, 2] * b[2, c]
+        out[r, 3] += a[r, 3]
+
+
+@njit(cache=True, nogil=True)
+def evaluate_poses(
+    begin,
+    end,
+    waypoints,
+    reference_from_wrist,
+    touch,
+    arm,
+    convention,
+    limits,
+    elbow,
+    principal_only,
+    eta,
+    scene,
+    branches,
+    joints,
+    outcome,
+    clearance,
+    turns,
+    space,
+):
+    """Evaluate tool poses begin..end-1; pose p is waypoint p // o with orientation p % o.
+
+    `waypoints` (n, 3, 4), `reference_from_wrist` (o, 3, 4), `touch` (n,). Fills `joints`
+    (n, o, b, 6) with model angles of the principal pendant representative, `outcome` and
+    `turns` (n, o, b) and `clearance` (n, o, b) [m], nan where it was not needed.
+    """
+    orientations = reference_from_wrist.shape[0]
+    bodies = scene.frame.shape[0]
+    wrist = np.empty((3, 4))
+    solved = np.empty((8, 6))
+    found = np.empty(8, np.bool_)
+    frames = np.empty((7, 3, 4))
+    pendant = np.empty(6)
+    rotations = np.empty((bodies, 3, 3))
+    positions = np.empty((bodies, 3))
+    witness = np.empty((2, 3))
+    points = np.empty((2, 3))
+    nearest = np.empty(2, np.int64)
+    for p in range(begin, end):
+        n, o = p // orientations, p % orientations
+        multiply(waypoints[n], reference_from_wrist[o], wrist)
+        inverse_branches(arm, wrist, solved, found)
+        for b in range(branches.shape[0]):
+            branch = branches[b]
+            clearance[n, o, b] = np.nan
+            turns[n, o, b] = 0
+            joints[n, o, b, :] = solved[branch]
+            if not found[branch]:
+                outcome[n, o, b] = _UNREACHABLE
+                continue
+            to_pendant(convention, solved[branch], pendant)
+            count = kept_representatives(pendant, limits, elbow, principal_only, space)
+            turns[n, o, b] = count
+            if count == 0:
+                outcome[n, o, b] = _JOINT_LIMIT
+                continue
+            if manipulability(arm, solved[branch]) <= eta:
+                outcome[n, o, b] = _SINGULAR
+                continue
+            forward_frames(arm, solved[branch], frames)
+            status, d = check_pose(
+                scene, frames, touch[n], rotations, positions, witness, nearest, points
+            )
+            clearance[n, o, b] = d
+            outcome[n, o, b] = _FEASIBLE if status == 0 else _COLLISION + status - 1
+
+
+@njit(cache=True, nogil=True)
+def expand_nodes(
+    begin,
+    end,
+    joints,
+    outcome,
+    clearance,
+    convention,
+    model_from_pendant,
+    limits,
+    elbow,
+    principal_only,
+    space,
+    row,
+    model,
+    pendant_joints,
+    node_clearance,
+    candidate,
+):
+    """Write a node per representative of every feasible branch of poses begin..end-1.
+
+    `row` is the first node to write; `candidate` (k, 4) receives waypoint, orientation,
+    branch slot and turn. Returns the next free row.
+    """
+    orientations, slots = outcome.shape[1], outcome.shape[2]
+    pendant = np.empty(6)
+    for p in range(begin, end):
+        n, o = p // orientations, p % orientations
+        for b in range(slots):
+            if outcome[n, o, b] != _FEASIBLE:
+                continue
+            to_pendant(convention, joints[n, o, b], pendant)
+            count = kept_representatives(pendant, limits, elbow, principal_only, space)
+            for k in range(count):
+                for r in range(6):
+                    pendant_joints[row, r] = space[k, r]
+                    angle = 0.0
+                    for c in range(6):
+                        angle += model_from_pendant[r, c] * space[k, c]
+                    model[row, r] = angle
+                node_clearance[row] = clearance[n, o, b]
+                candidate[row, 0] = n
+                candidate[row, 1] = o
+                candidate[row, 2] = b
+                candidate[row, 3] = k
+                row += 1
+    return row
+
+
+@njit(cache=True, nogil=True)
+def pose_of_joints(arm, scene, model, touch):
+    """Outcome, clearance, rows of the nearest bodies and nearest points of many postures.
+
+    `model` (k, 6) model angles, `touch` (k,). Returns arrays of k rows.
+    """
+    count = model.shape[0]
+    bodies = scene.frame.shape[0]
+    status = np.empty(count, np.int64)
+    clearance = np.empty(count)
+    nearest = np.empty((count, 2), np.int64)
+    points = np.full((count, 2, 3), np.nan)
+    frames = np.empty((7, 3, 4))
+    rotations = np.empty((bodies, 3, 3))
+    positions = np.empty((bodies, 3))
+    witness = np.empty((2, 3))
+    for k in range(count):
+        forward_frames(arm, model[k], frames)
+        status[k], clearance[k] = check_pose(
+            scene, frames, touch[k], rotations, positions, witness, nearest[k], points[k]
+        )
+    return status, clearance, nearest, points

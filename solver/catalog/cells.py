@@ -1,0 +1,218 @@
+"""Cells as TOML: robot, tool, beam, fixtures, path and settings of one planning problem."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from solver.catalog.beams import load_beam, read_dimensions
+from solver.catalog.bodies import read_body, read_rotation
+from solver.catalog.cell_path import PathOwner, read_path
+from solver.catalog.cell_settings import read_program, read_settings
+from solver.catalog.names import file_of
+from solver.catalog.robots import load_robot, read_sources
+from solver.catalog.toml_reader import Table, read_toml
+from solver.catalog.tools import load_tool
+from solver.model.beam import STEEL_TOLERANCE, beam_workpiece, check_path_outside_steel
+from solver.model.problem import PlanningProblem
+from solver.model.robot import JOINTS, Robot
+from solver.model.shapes import Body, Box
+from solver.model.tool import Tool
+from solver.model.toolpath import Frame
+from solver.model.workpiece import BeamSection, Workpiece
+from solver.transforms import FloatArray, rigid
+from solver.units import DEG_PER_RAD
+
+FLOOR_GROUP: Final = "floor"
+FLOOR_SIZE: Final = (10.0, 10.0, 1.0)
+"""The floor as a box below z = 0, centred on the robot [m]."""
+
+DIMENSIONS: Final = ("height_mm", "width_mm", "web_mm", "flange_mm")
+PLACEMENT_FRAMES: Final = (Frame.FLOOR.value, Frame.FANUC_WORLD.value)
+
+
+def load_cell(
+    name_or_path: str | Path,
+    *,
+    beam: str | Path | BeamSection | None = None,
+    path: str | Path | None = None,
+) -> PlanningProblem:
+    """Load a shipped cell by name, or one of a TOML file.
+
+    Parameters
+    ----------
+    name_or_path : str or Path
+        A shipped name, or a file (it ends in .toml or holds a separator).
+    beam : str, Path or BeamSection, optional
+        Another section in place of the cell's; the rule of its placement is kept.
+    path : str or Path, optional
+        Another path file, relative to the working directory, read with the cell's options; it
+        states its frame itself.
+
+    Raises
+    ------
+    UnknownNameError
+        If no shipped cell, robot, tool or section has the stated name.
+    InputError
+        If a file is unusable, contradicts itself, or the path enters the beam's steel.
+
+    Examples
+    --------
+    >>> from solver.catalog import load_cell
+    >>> load_cell("groove_paper").workpiece.name
+    'HW300'
+    """
+    document = read_toml(file_of("cells", name_or_path))
+    head = document.table("cell")
+    name, title = head.name("name"), head.text("title")
+    robot_table = document.table("robot")
+    robot = load_robot(robot_table.text("model"), relative_to=document.folder)
+    tool = load_tool(document.table("tool").text("model"), relative_to=document.folder)
+    workpiece = _workpiece(document.table("beam"), beam, robot)
+    fixtures = _fixtures(document, head)
+    owner = PathOwner(workpiece, robot, tool)
+    toolpath = read_path(document.table("path"), owner, None if path is None else Path(path))
+    bodies = _body_set(robot_table, robot)
+    windows = _joint_windows(robot_table.optional_table("windows_deg"), robot)
+    settings = read_settings(document.table("settings"))
+    program = read_program(document.optional_table("program"))
+    assumptions = document.texts("assumptions", default=())
+    read_sources(document)
+    document.finish()
+    with document.located():
+        problem = PlanningProblem(
+            name=name,
+            robot=robot,
+            bodies=bodies,
+            tool=tool,
+            workpiece=workpiece,
+            fixtures=fixtures,
+            toolpath=toolpath,
+            settings=settings,
+            program=program,
+            joint_windows=windows,
+            title=title,
+            assumptions=assumptions,
+        )
+        check_path_outside_steel(problem, _path_allowance(tool))
+    return problem
+
+
+def _path_allowance(tool: Tool) -> float:
+    """How deep a path point may lie in the steel: as deep as the tool may enter it [m]."""
+    depths = [one.depth for one in tool.bodies if one.role.value == "contact"]
+    return max([STEEL_TOLERANCE, *depths])
+
+
+def _body_set(table: Table, robot: Robot) -> str:
+    return table.choice("bodies", tuple(robot.body_sets))
+
+
+def _joint_windows(table: Table | None, robot: Robot) -> FloatArray | None:
+    """Narrow the windows of single joints; a window outside the limits is an error."""
+    if table is None:
+        return None
+    windows = np.array(robot.limits)
+    for joint in range(JOINTS):
+        key = f"J{joint + 1}"
+        if not table.has(key):
+            continue
+        low, high = _window(table, key)
+        if not low < high:
+            raise table.error(key, "expected the lower angle before the higher one")
+        if low >= windows[joint, 1] or high <= windows[joint, 0]:
+            limits = " to ".join(f"{limit * DEG_PER_RAD:g}" for limit in windows[joint])
+            raise table.error(key, f"the window lies outside the robot's limits, {limits} deg")
+        windows[joint] = (low, high)
+    return windows
+
+
+def _window(table: Table, key: str) -> tuple[float, float]:
+    # The unit stands in the name of the table, so the joint's key is given it here.
+    value = table.get(key, "a list of 2 numbers in deg")
+    unit = Table({f"{key}_deg": value}, table.file, table.key)
+    low, high = unit.numbers(f"{key}_deg", 2)
+    return low, high
+
+
+def _workpiece(table: Table, beam: str | Path | BeamSection | None, robot: Robot) -> Workpiece:
+    own = _section(table)
+    section = own
+    if isinstance(beam, BeamSection):
+        section = beam
+    elif beam is not None:
+        section = load_beam(beam)
+    length = table.number("length_mm")
+    fillets = table.boolean("fillets", True)
+    rotation = read_rotation(table)
+    position = _position(table, section, length, rotation)
+    if table.choice("frame", PLACEMENT_FRAMES, Frame.FLOOR.value) == Frame.FANUC_WORLD.value:
+        position = position + np.array([0.0, 0.0, robot.world_height])
+    with table.located():
+        return beam_workpiece(section, length, rigid(rotation, position), fillets)
+
+
+def _section(table: Table) -> BeamSection:
+    """Find the section by name, or by its dimensions; a root radius may replace that of a name."""
+    if any(table.has(key) for key in DIMENSIONS):
+        name = table.name("section") if table.has("section") else "custom"
+        return read_dimensions(table, name, "stated by the cell")
+    name = table.text("section")
+    section = load_beam(name, relative_to=table.folder)
+    if not table.has("root_mm"):
+        return section
+    with table.located("root_mm"):
+        return BeamSection(
+            section.name,
+            section.height,
+            section.width,
+            section.web,
+            section.flange,
+            table.number("root_mm", low=0.0),
+            f"{section.source}, root radius stated by the cell",
+        )
+
+
+def _position(
+    table: Table, section: BeamSection, length: float, rotation: FloatArray
+) -> FloatArray:
+    """Find the beam's centre: stated, or over a point of the plan with its lowest edge at a height.
+
+    The second rule keeps the beam on its supports when another section takes its place.
+    """
+    if table.has("lower_edge_mm"):
+        x, y = table.numbers("position_xy_mm", 2)
+        half = np.array([length, section.width, section.height]) / 2.0
+        reach = float(np.abs(rotation[2]) @ half)
+        return np.array([x, y, table.number("lower_edge_mm") + reach])
+    return np.array(table.numbers("position_mm", 3))
+
+
+def _fixtures(document: Table, head: Table) -> tuple[Body, ...]:
+    """Bodies in the floor frame; the floor itself is one of them where the cell says so."""
+    bodies = [_fixture(one) for one in document.tables("fixtures", ())]
+    if head.boolean("floor", False):
+        centre = (0.0, 0.0, -FLOOR_SIZE[2] / 2.0)
+        bodies.append(Body("floor", Box(np.array(FLOOR_SIZE)), rigid(position=centre), FLOOR_GROUP))
+    names = [one.name for one in bodies]
+    for index, one in enumerate(names):
+        if one in names[:index]:
+            raise document.error(f"fixtures[{index}].name", f"two fixtures are called {one!r}")
+    return tuple(bodies)
+
+
+def _fixture(table: Table) -> Body:
+    if not table.has("mesh"):
+        return read_body(table)
+    from solver.collision.meshes import load_mesh  # noqa: PLC0415 - trimesh only where used
+
+    name = table.name("name")
+    group = table.name("group") if table.has("group") else name
+    unit = table.choice("unit", ("mm", "m"), "mm")
+    position = table.numbers("position_mm", 3, (0.0, 0.0, 0.0))
+    pose = rigid(read_rotation(table), position)
+    mesh = load_mesh(table.folder / table.text("mesh"), unit)
+    with table.located():
+        return Body(name, mesh, pose, group)

@@ -1,0 +1,56 @@
+"""Tools as TOML: TCP, mass, and bodies in three roles."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from solver.catalog.bodies import read_body, read_rotation
+from solver.catalog.names import file_of
+from solver.catalog.robots import read_sources
+from solver.catalog.toml_reader import Table, read_toml
+from solver.model.shapes import ToolRole
+from solver.model.tool import Tool, ToolBody
+from solver.transforms import rigid
+from solver.units import MM
+
+ROLES = tuple(role.value for role in ToolRole)
+
+
+def load_tool(name_or_path: str | Path, *, relative_to: Path | None = None) -> Tool:
+    """Load a shipped tool by name, or one of a TOML file.
+
+    Raises
+    ------
+    UnknownNameError
+        If no shipped tool has this name.
+    InputError
+        If the file is unusable or contradicts itself; the sentence names file and key.
+    """
+    document = read_toml(file_of("tools", name_or_path, relative_to))
+    head = document.table("tool")
+    name, title = head.name("name"), head.text("title")
+    mass = head.number("mass_kg", low=0.0)
+    tcp = rigid(read_rotation(head, "tcp_wpr_deg"), head.numbers("tcp_mm", 3))
+    bodies = tuple(_tool_body(one) for one in document.tables("bodies"))
+    names = [one.body.name for one in bodies]
+    for index, one in enumerate(names):
+        if one in names[:index]:
+            raise document.error(f"bodies[{index}].name", f"two bodies are called {one!r}")
+    assumptions = document.texts("assumptions", default=())
+    read_sources(document)
+    document.finish()
+    with document.located():
+        return Tool(name, title, tcp, mass, bodies, assumptions)
+
+
+def _tool_body(table: Table) -> ToolBody:
+    role = ToolRole(table.choice("role", ROLES, "clearance"))
+    body = read_body(table)
+    with table.located():
+        if role is ToolRole.CLEARANCE:
+            return ToolBody(body, role)
+        margin = table.number("margin_mm", 2.0 * MM, low=0.0)
+        if role is ToolRole.NEAR:
+            return ToolBody(body, role, margin=margin)
+        depth = table.number("depth_mm", 0.5 * MM, low=0.0)
+        return ToolBody(body, role, margin=margin, depth=depth)

@@ -1,0 +1,75 @@
+"""What the commands print: JSON, tables and a progress bar."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from solver.io.atomic import write_atomically
+
+_BAR = 28
+_FIRST_SHOWN = 0.5
+_INTERVAL = 0.1
+
+
+class TerminalMonitor:
+    """A monitor with a progress bar on stderr, shown only on terminals and for long runs."""
+
+    def __init__(self) -> None:
+        self._shown = sys.stderr.isatty()
+        self._started = self._last = time.monotonic()
+        self._drawn = False
+
+    def report(self, stage: str, done: int, total: int) -> None:
+        """Draw the bar, at most ten times a second."""
+        now = time.monotonic()
+        if not self._shown or now - self._started < _FIRST_SHOWN or now - self._last < _INTERVAL:
+            return
+        self._last, self._drawn = now, True
+        share = done / total if total else 1.0
+        filled = int(_BAR * share)
+        bar = "#" * filled + "." * (_BAR - filled)
+        sys.stderr.write(f"\r{stage:<12} [{bar}] {100 * share:3.0f} %")
+        sys.stderr.flush()
+
+    def cancelled(self) -> bool:
+        """Never: Ctrl-C interrupts between two pieces of work."""
+        return False
+
+    def close(self) -> None:
+        """Remove the bar."""
+        if self._drawn:
+            sys.stderr.write("\r" + " " * (_BAR + 24) + "\r")
+            sys.stderr.flush()
+
+
+def plain(value: Any) -> Any:
+    """Arrays and tuples as lists, and numbers that JSON cannot hold as null."""
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def emit_json(document: Mapping[str, Any], target: str) -> None:
+    """Write a document to a file, or to the screen for '-'."""
+    text = json.dumps(plain(document), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    if target == "-":
+        sys.stdout.write(text)
+    else:
+        write_atomically(Path(target), text.encode())
+

@@ -1,0 +1,79 @@
+"""Signed gap of two cores that touch or overlap: an estimate that never flatters.
+
+The depth of an overlap is the least overlap over all directions. Any direction gives an upper
+bound of it, so the best of a set of directions over-states the depth or meets it. For two
+boxes, and for a segment and a box, the set holds every direction that can be the minimum; for
+others it is a start that is then improved.
+"""
+
+import math
+
+from numba import njit
+
+from solver.collision.kernels_gjk import dot, gjk, minus, norm, scaled, separation
+from solver.collision.kernels_shapes import BOX, CYLINDER
+
+IMPROVEMENTS = 8
+
+
+@njit(cache=True, nogil=True)
+def _axis(r, k):
+    if k == 0:
+        return r[0], r[3], r[6]
+    if k == 1:
+        return r[1], r[4], r[7]
+    return r[2], r[5], r[8]
+
+
+@njit(cache=True, nogil=True)
+def _unit_axis(k):
+    return 1.0 * (k == 0), 1.0 * (k == 1), 1.0 * (k == 2)
+
+
+@njit(cache=True, nogil=True)
+def _direction(number, r, t, hint):
+    """Candidate direction by number: axes of B, axes of A, their products, and more."""
+    if number < 3:
+        return _unit_axis(number)
+    if number < 6:
+        return _axis(r, number - 3)
+    if number < 15:
+        ux, uy, uz = _unit_axis((number - 6) % 3)
+        vx, vy, vz = _axis(r, (number - 6) // 3)
+        return uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    if number < 17:
+        return hint if number == 15 else t
+    # across the axis of B or of A, for the sides of cylinders
+    a = _unit_axis(2) if number == 17 else _axis(r, 2)
+    return minus(t, scaled(dot(t, a), a))
+
+
+@njit(cache=True, nogil=True)
+def overlap(a, vertices_a, r, t, b, vertices_b, hint):
+    """Best signed gap found over candidate directions, and that unit direction from B to A."""
+    best, n = -math.inf, (0.0, 0.0, 1.0)
+    for number in range(19):
+        d = _direction(number, r, t, hint)
+        length = norm(d)
+        if length < 1e-9:
+            continue
+        for sign in (1.0, -1.0):
+            u = scaled(sign / length, d)
+            gap = separation(a, vertices_a, r, t, b, vertices_b, u)
+            if gap > best:
+                best, n = gap, u
+    if b[0] == BOX and a[0] != CYLINDER and a[0] <= BOX:
+        return best, n
+    # Drawn apart along n by a little more than the overlap, the bodies are separated; the
+    # direction between their nearest points then overlaps by no more than n does.
+    for _ in range(IMPROVEMENTS):
+        if best >= 0.0:
+            break
+        draw = 1e-6 - 1.5 * best
+        apart = (t[0] + draw * n[0], t[1] + draw * n[1], t[2] + draw * n[2])
+        _, u, _, _ = gjk(a, vertices_a, r, apart, b, vertices_b, n, math.inf)
+        gap = separation(a, vertices_a, r, t, b, vertices_b, u)
+        if gap <= best + 1e-9:
+            break
+        best, n = gap, u
+    return best, n

@@ -1,0 +1,151 @@
+"""GJK on the cores of two convex bodies, stopped by its own certificate.
+
+Every direction n that is tried gives a separating-plane bound: the cores are at least
+`min over A of n.x - max over B of n.x` apart. What is returned is the best of these bounds, so
+that stopping early, for whatever reason, can only under-state the distance.
+
+A pair is `a, vertices_a, r, t, b, vertices_b`: the bodies as numbers, and the rotation (nine)
+and position (three) of A in the frame of B, in which everything here is.
+"""
+
+import math
+
+from numba import njit
+
+from solver.collision.kernels_shapes import core_reach, core_support
+from solver.collision.kernels_simplex import edge_weight, tetrahedron_weights, triangle_weights
+
+GAP = 1e-9
+"""Width of the bracket between bound and witness at which the search stops [m]."""
+
+TOUCH = 1e-10
+"""Witnesses nearer than this count as touching [m]."""
+
+MOST_STEPS = 80
+
+
+@njit(cache=True, nogil=True)
+def support_of_first(a, vertices_a, r, t, n):
+    """Point of the core of A farthest along n."""
+    x, y, z = core_support(
+        a,
+        vertices_a,
+        r[0] * n[0] + r[3] * n[1] + r[6] * n[2],
+        r[1] * n[0] + r[4] * n[1] + r[7] * n[2],
+        r[2] * n[0] + r[5] * n[1] + r[8] * n[2],
+    )
+    return (
+        r[0] * x + r[1] * y + r[2] * z + t[0],
+        r[3] * x + r[4] * y + r[5] * z + t[1],
+        r[6] * x + r[7] * y + r[8] * z + t[2],
+    )
+
+
+@njit(cache=True, nogil=True)
+def separation(a, vertices_a, r, t, b, vertices_b, n):
+    """Signed gap of the cores along the unit direction n, from B to A."""
+    reach_a = core_reach(
+        a,
+        vertices_a,
+        -(r[0] * n[0] + r[3] * n[1] + r[6] * n[2]),
+        -(r[1] * n[0] + r[4] * n[1] + r[7] * n[2]),
+        -(r[2] * n[0] + r[5] * n[1] + r[8] * n[2]),
+    )
+    return dot(n, t) - reach_a - core_reach(b, vertices_b, n[0], n[1], n[2])
+
+
+@njit(cache=True, nogil=True)
+def dot(u, v):
+    """Scalar product of two triples."""
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+@njit(cache=True, nogil=True)
+def norm(u):
+    """Length of a triple."""
+    return math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
+
+
+@njit(cache=True, nogil=True)
+def minus(u, v):
+    """Difference of two triples."""
+    return u[0] - v[0], u[1] - v[1], u[2] - v[2]
+
+
+@njit(cache=True, nogil=True)
+def scaled(factor, u):
+    """Multiple of a triple."""
+    return factor * u[0], factor * u[1], factor * u[2]
+
+
+@njit(cache=True, nogil=True)
+def _blend(wa, wb, wc, a, b, c):
+    return (
+        wa * a[0] + wb * b[0] + wc * c[0],
+        wa * a[1] + wb * b[1] + wc * c[1],
+        wa * a[2] + wb * b[2] + wc * c[2],
+    )
+
+
+@njit(cache=True, nogil=True)
+def gjk(a, vertices_a, r, t, b, vertices_b, start, cutoff):
+    """Distance of two cores, from any first guess `start` of the direction from B to A.
+
+    Returns (bound, n, point of A, point of B): the certified lower bound of the distance, the
+    unit direction it holds for, and the witnesses. The search ends when the bound exceeds
+    `cutoff`. A bound that is not positive says that no separation was found.
+    """
+    length = norm(start)
+    n = scaled(1.0 / length, start) if length > 0.0 else (0.0, 0.0, 1.0)
+    best, best_n = -math.inf, n
+    # corners of the simplex in A - B, and the points of A behind them
+    zero = (0.0, 0.0, 0.0)
+    y0, y1, y2, y3 = zero, zero, zero, zero
+    a0, a1, a2, a3 = zero, zero, zero, zero
+    w1, w2 = 0.0, 0.0
+    v, near = zero, zero
+    count = 0
+    distance = math.inf
+    for _ in range(MOST_STEPS):
+        pa = support_of_first(a, vertices_a, r, t, (-n[0], -n[1], -n[2]))
+        y = minus(pa, core_support(b, vertices_b, n[0], n[1], n[2]))
+        bound = dot(n, y)
+        if bound > best:
+            best, best_n = bound, n
+        if distance - best < GAP:
+            break
+        # put the new corner first, then keep the corners that carry the nearest point
+        y3, y2, y1, y0 = y2, y1, y0, y
+        a3, a2, a1, a0 = a2, a1, a0, pa
+        w0, w1, w2, w3 = 1.0, 0.0, 0.0, 0.0
+        if count == 1:
+            w1 = edge_weight(y0, y1)
+            w0 = 1.0 - w1
+        elif count == 2:
+            w0, w1, w2, _ = triangle_weights(y0, y1, y2)
+        elif count == 3:
+            w0, w1, w2, w3 = tetrahedron_weights(y0, y1, y2, y3)
+            if w0 + w1 > 1.5:
+                break
+        while w0 == 0.0:
+            y0, y1, y2 = y1, y2, y3
+            a0, a1, a2 = a1, a2, a3
+            w0, w1, w2, w3 = w1, w2, w3, 0.0
+        if w1 == 0.0:
+            y1, y2 = y2, y3
+            a1, a2 = a2, a3
+            w1, w2, w3 = w2, w3, 0.0
+            if w1 == 0.0:
+                y1, a1, w1, w2 = y2, a2, w2, 0.0
+        if w2 == 0.0:
+            y2, a2, w2 = y3, a3, w3
+        count = 1 + (w1 != 0.0) + (w2 != 0.0)
+        step = _blend(w0, w1, w2, y0, y1, y2)
+        length = norm(step)
+        if length >= distance:
+            break
+        v, near, distance = step, _blend(w0, w1, w2, a0, a1, a2), length
+        if length <= TOUCH or best > cutoff:
+            break
+        n = scaled(1.0 / length, v)
+    return best, best_n, near, minus(near, v)

@@ -1,0 +1,114 @@
+"""Convex bodies as scalars: kinds, support points and support values.
+
+A body is a *core* (point, segment, cylinder, box or vertices) and a rounding radius about it:
+a sphere is a rounded point, a capsule a rounded segment; the others are their own core.
+
+Kernels pass a body as plain numbers, since slicing arrays costs more than most distances do:
+`body` is (kind, size x, size y, size z, first row, last row + 1 of its vertices), a rotation is
+nine numbers row by row, a position three.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+SPHERE = 0
+CAPSULE = 1
+CYLINDER = 2
+BOX = 3
+HULL = 4
+
+
+@njit(cache=True, nogil=True)
+def body_numbers(kind, size, count):
+    """Gather the numbers of one body from its kind, its size (3,) and its count of vertices."""
+    return np.int64(kind), size[0], size[1], size[2], np.int64(0), np.int64(count)
+
+
+@njit(cache=True, nogil=True)
+def vector_numbers(vector):
+    """Unpack a (3,) array."""
+    return vector[0], vector[1], vector[2]
+
+
+@njit(cache=True, nogil=True)
+def rotation_numbers(m):
+    """Unpack a (3, 3) array, row by row."""
+    return m[0, 0], m[0, 1], m[0, 2], m[1, 0], m[1, 1], m[1, 2], m[2, 0], m[2, 1], m[2, 2]
+
+
+@njit(cache=True, nogil=True)
+def row_of_vectors(vectors, i):
+    """Unpack row i of a (k, 3) array."""
+    return vectors[i, 0], vectors[i, 1], vectors[i, 2]
+
+
+@njit(cache=True, nogil=True)
+def row_of_rotations(m, i):
+    """Unpack row i of a (k, 3, 3) array."""
+    return (
+        m[i, 0, 0],
+        m[i, 0, 1],
+        m[i, 0, 2],
+        m[i, 1, 0],
+        m[i, 1, 1],
+        m[i, 1, 2],
+        m[i, 2, 0],
+        m[i, 2, 1],
+        m[i, 2, 2],
+    )
+
+
+@njit(cache=True, nogil=True)
+def core_radius(body):
+    """Return the rounding radius about the core [m]."""
+    if body[0] == SPHERE:
+        return body[1]
+    if body[0] == CAPSULE:
+        return body[2]
+    return 0.0
+
+
+@njit(cache=True, nogil=True)
+def core_support(body, vertices, dx, dy, dz):
+    """Point of the core farthest along d, both in the body's own frame."""
+    kind, sx, sy, sz, first, last = body
+    if kind == BOX:
+        return math.copysign(sx, dx), math.copysign(sy, dy), math.copysign(sz, dz)
+    if kind == CYLINDER:
+        across = math.sqrt(dx * dx + dy * dy)
+        if across > 0.0:
+            return sy * (dx / across), sy * (dy / across), math.copysign(sx, dz)
+        return 0.0, 0.0, math.copysign(sx, dz)
+    if kind == CAPSULE:
+        return 0.0, 0.0, math.copysign(sx, dz)
+    if kind == SPHERE:
+        return 0.0, 0.0, 0.0
+    best = first
+    reach = -math.inf
+    for i in range(first, last):
+        value = dx * vertices[i, 0] + dy * vertices[i, 1] + dz * vertices[i, 2]
+        if value > reach:
+            reach = value
+            best = i
+    return vertices[best, 0], vertices[best, 1], vertices[best, 2]
+
+
+@njit(cache=True, nogil=True)
+def core_reach(body, vertices, dx, dy, dz):
+    """Largest value of d . x over the core, in the body's own frame."""
+    kind, sx, sy, sz, first, last = body
+    if kind == BOX:
+        return sx * abs(dx) + sy * abs(dy) + sz * abs(dz)
+    if kind == CYLINDER:
+        return sx * abs(dz) + sy * math.sqrt(dx * dx + dy * dy)
+    if kind == CAPSULE:
+        return sx * abs(dz)
+    if kind == SPHERE:
+        return 0.0
+    reach = -math.inf
+    for i in range(first, last):
+        value = dx * vertices[i, 0] + dy * vertices[i, 1] + dz * vertices[i, 2]
+        reach = max(reach, value)
+    return reach

@@ -1,0 +1,74 @@
+"""The importers by file extension; a new one is a file and a line here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Final
+
+from solver.errors import InputError, Place
+from solver.io.importers.csv_path import import_csv
+from solver.io.importers.json_path import import_json
+from solver.io.importers.naming import listed, shown
+from solver.io.importers.options import ImportOptions
+from solver.io.importers.resampling import resample
+from solver.io.importers.source import Source, read_source
+from solver.model.toolpath import Toolpath
+
+Importer = Callable[[Source, ImportOptions], Toolpath]
+"""Reads the bytes of a file; every refusal is an InputError."""
+
+IMPORTERS: Final[Mapping[str, Importer]] = MappingProxyType(
+    {
+        ".csv": import_csv,
+        ".txt": import_csv,
+        ".tsv": import_csv,
+        ".json": import_json,
+    }
+)
+"""Extension in lower case -> importer."""
+
+
+def load_toolpath(path: str | Path, options: ImportOptions | None = None) -> Toolpath:
+    """Read a path file in the format that its extension names.
+
+    Parameters
+    ----------
+    path : str or Path
+        A .csv, .txt, .tsv, .json or .ls file of at most 64 MB.
+    options : ImportOptions, optional
+        What the file does not say itself.
+
+    Returns
+    -------
+    Toolpath
+        Poses in the frame that the file or the options state; lengths in [m].
+
+    Raises
+    ------
+    InputError
+        One sentence that names the file, the line and the column.
+    """
+    _importer(str(path))
+    return import_source(read_source(path), options)
+
+
+def import_source(source: Source, options: ImportOptions | None = None) -> Toolpath:
+    """Read a path from bytes in memory; the extension of `source.file` names the format."""
+    chosen = options or ImportOptions()
+    importer = _importer(source.file)
+    toolpath = importer(source, chosen)
+    return toolpath if chosen.resample is None else resample(toolpath, chosen.resample)
+
+
+def _importer(file: str) -> Importer:
+    extension = Path(file).suffix.casefold()
+    importer = IMPORTERS.get(extension)
+    if importer is None:
+        raise InputError(
+            f"the extension {shown(extension)} names no path format, "
+            f"expected {listed(IMPORTERS, 'or')}",
+            Place(file),
+        )
+    return importer

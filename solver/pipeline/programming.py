@@ -1,0 +1,170 @@
+"""From a planned sequence to a written program, and from a program back to its checks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from solver.analysis.program_check import Check, check_positions
+from solver.analysis.result import PlanningResult, Sequence
+from solver.costs.steps import gap_times
+from solver.errors import InputError, RefusedError
+from solver.io.ls_program import ProgramFile
+from solver.io.posts.fanuc_text import program_name
+from solver.io.posts.post import PostOptions
+from solver.io.verified_program import write_verified
+from solver.model.problem import PlanningProblem
+from solver.model.program import JointProgram, Move, rounded_joints
+from solver.model.toolpath import Event
+from solver.transforms import FloatArray
+from solver.units import MM, MM_PER_M
+
+CELL_REMARK = "CELL "
+BEAM_REMARK = "BEAM "
+ACCEPTED_REMARK = "ACCEPTED CLEARANCE "
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenProgram:
+    """A program that was written and read back: where, and the checks it passed."""
+
+    path: Path
+    checks: tuple[Check, ...]
+
+
+def build_program(
+    result: PlanningResult,
+    name: str | None = None,
+    sequence: Sequence | None = None,
+    accepted_clearance: float | None = None,
+) -> JointProgram:
+    """The joint program of a sequence (the result's own by default).
+
+    Moves within a pass last as long as their distance takes at the feed; the first move of
+    each pass goes at the cell's approach speed and ends FINE.
+    """
+    problem, sequence = result.problem, sequence or result.sequence
+    settings = problem.program
+    times = gap_times(problem)
+    events = _events(problem)
+    joints = rounded_joints(sequence.pendant)
+    last = len(joints) - 1
+    moves = []
+    for index, row in enumerate(joints):
+        arriving = np.nan if index == 0 else float(times[index - 1])
+        leaving = np.nan if index == last else float(times[index])
+        fine = np.isnan(arriving) or np.isnan(leaving)
+        moves.append(
+            Move(
+                joints=row,
+                percent=settings.approach_percent if np.isnan(arriving) else None,
+                duration=None if np.isnan(arriving) else arriving,
+                cnt=None if fine else 100,
+                waypoint=index,
+                events=events.get(index, ()),
+            )
+        )
+    return JointProgram(
+        name=(name or settings.name).upper(),
+        comment=settings.comment,
+        remarks=_remarks(problem, accepted_clearance),
+        uframe=settings.uframe,
+        utool=settings.utool,
+        moves=tuple(moves),
+        date=settings.date,
+        time=settings.time,
+    )
+
+
+def _events(problem: PlanningProblem) -> dict[int, tuple[Event, ...]]:
+    events: dict[int, tuple[Event, ...]] = {}
+    first = 0
+    for one in problem.toolpath.passes:
+        events |= {first + index: what for index, what in one.events.items()}
+        first += len(one)
+    return events
+
+
+def _remarks(problem: PlanningProblem, accepted: float | None) -> tuple[str, ...]:
+    section = problem.workpiece.section
+    lines = [f"{CELL_REMARK}{problem.name}"]
+    if section is not None:
+        lines.append(f"{BEAM_REMARK}{section.name}")
+    if accepted is not None:
+        lines.append(f"{ACCEPTED_REMARK}{accepted * MM_PER_M:.3f} MM")
+    return (*lines, "checked on the nominal model", "verify in T1")
+
+
+def write_program(
+    result: PlanningResult, path: Path, accepted_clearance: float | None = None
+) -> WrittenProgram:
+    """Write the result's program, read it back and check it; nothing is left when a check fails.
+
+    `accepted_clearance` [m] is the least clearance that a person accepts where the safety
+    distance cannot be met; it is stamped into the program.
+    """
+    problem = result.problem
+    required = problem.settings.safety_distance
+    if accepted_clearance is not None and accepted_clearance < required:
+        required = accepted_clearance
+    else:
+        accepted_clearance = None
+    least = result.sequence.least_clearance
+    if least < required:
+        raise RefusedError(
+            f"no program was written: the best sequence keeps only {_down(least)} mm of the "
+            f"{required * MM_PER_M:g} mm asked; change the cell, or accept less with "
+            f"--accept-clearance {_down(least)}"
+        )
+    program = build_program(result, path.stem, accepted_clearance=accepted_clearance)
+    checks: list[Check] = []
+
+    def verify(written: ProgramFile) -> None:
+        checks.extend(check_program(problem, written, required))
+        failed = [check for check in checks if not check.passed]
+        if failed:
+            lines = "; ".join(str(check) for check in failed)
+            raise RefusedError(f"no program was written, since a check failed: {lines}")
+
+    write_verified(program, path, verify)
+    return WrittenProgram(path, tuple(checks))
+
+
+def _down(clearance: float) -> str:
+    """A clearance in mm, rounded down to 0.1 mm."""
+    return f"{np.floor(clearance * MM_PER_M * 10.0) / 10.0:.1f}"
+
+
+def check_output_name(path: Path) -> None:
+    """Refuse a file whose name no controller would load, before anything is planned."""
+    if path.suffix.upper() != ".LS":
+        raise InputError(f"{path}: a FANUC program file ends in .LS")
+    program_name(path.stem.upper(), PostOptions().name_length)
+
+
+def required_clearance(problem: PlanningProblem, written: ProgramFile) -> float:
+    """What the program has to keep [m]: the safety distance, or less where it says so."""
+    for remark in written.remarks:
+        if remark.startswith(ACCEPTED_REMARK):
+            text = remark.removeprefix(ACCEPTED_REMARK).removesuffix("MM").strip()
+            try:
+                return min(float(text) * MM, problem.settings.safety_distance)
+            except ValueError as error:
+                raise InputError(f"remark {remark!r} names no clearance") from error
+    return problem.settings.safety_distance
+
+
+def check_program(
+    problem: PlanningProblem, written: ProgramFile, least_clearance: float
+) -> tuple[Check, ...]:
+    """All checks of a program that was read from a file."""
+    frames = {(one.first.uframe, one.first.utool) for one in written.positions.values()}
+    frames |= {(move.uframe, move.utool) for move in written.moves}
+    wanted = (problem.program.uframe, problem.program.utool)
+    wrong = len(frames - {wanted})
+    numbers = Check(
+        "frame and tool numbers", wrong == 0, wrong, 0, "other", f"UF {wanted[0]}, UT {wanted[1]}"
+    )
+    return (numbers, *check_positions(problem, written.path_joints(), least_clearance))

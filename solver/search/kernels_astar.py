@@ -1,0 +1,210 @@
+"""Compiled best-first search with a binary heap; expansions in pieces."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from solver.search.kernels_layers import (
+    BEST_ROW,
+    EUCLIDEAN,
+    ROWS,
+    TILE,
+    fill_tile,
+    gap_limits,
+    relax,
+)
+from solver.transforms import FloatArray, IntArray
+
+UNKNOWN = -1.0
+
+HEAP_SIZE = 0
+EXPANDED = 1
+GOAL = 2
+DEEPEST = 3
+
+PUSH_WORK = 16
+POP_WORK = 64
+
+
+@njit(cache=True, nogil=True)
+def before(key: float, node: int, other_key: float, other_node: int) -> bool:
+    """Order of the open list: least key first, then least node number."""
+    return key < other_key or (key == other_key and node < other_node)
+
+
+@njit(cache=True, nogil=True)
+def push(keys: FloatArray, nodes: IntArray, size: int, key: float, node: int) -> None:
+    """Add an entry to a heap of `size` entries."""
+    at = size
+    while at > 0:
+        parent = (at - 1) // 2
+        if not before(key, node, keys[parent], nodes[parent]):
+            break
+        keys[at] = keys[parent]
+        nodes[at] = nodes[parent]
+        at = parent
+    keys[at] = key
+    nodes[at] = node
+
+
+@njit(cache=True, nogil=True)
+def pop(keys: FloatArray, nodes: IntArray, size: int) -> int:
+    """Take the first entry from a heap of `size` entries and return its node."""
+    result = nodes[0]
+    key = keys[size - 1]
+    node = nodes[size - 1]
+    size -= 1
+    at = 0
+    while True:
+        child = 2 * at + 1
+        if child >= size:
+            break
+        if child + 1 < size and before(
+            keys[child + 1], nodes[child + 1], keys[child], nodes[child]
+        ):
+            child += 1
+        if not before(keys[child], nodes[child], key, node):
+            break
+        keys[at] = keys[child]
+        nodes[at] = nodes[child]
+        at = child
+    keys[at] = key
+    nodes[at] = node
+    return int(result)
+
+
+@njit(cache=True, nogil=True)
+def estimate(
+    tile: FloatArray,
+    joints: FloatArray,
+    ranges: FloatArray,
+    low: int,
+    high: int,
+    goals: FloatArray,
+    zeros: FloatArray,
+    weight: float,
+    heuristic: FloatArray,
+) -> None:
+    """Heuristic of the nodes low..high-1: weight times the least L2 distance to any goal."""
+    if weight == 0.0:
+        heuristic[low:high] = 0.0
+        return
+    padded = fill_tile(tile, joints, ranges, joints[:0], ranges[:0], low, high)
+    relax(tile, padded, goals, zeros, weight, EUCLIDEAN)
+    for node in range(low, high):
+        heuristic[node] = tile[BEST_ROW * TILE + node - low]
+
+
+@njit(cache=True, nogil=True)
+def open_starts(
+    joints: FloatArray,
+    ranges: FloatArray,
+    node_cost: FloatArray,
+    goals: FloatArray,
+    weight: float,
+    low: int,
+    high: int,
+    cost: FloatArray,
+    heuristic: FloatArray,
+    keys: FloatArray,
+    nodes: IntArray,
+    state: IntArray,
+) -> None:
+    """Push the start nodes low..high-1 (at most one tile), each with its node cost."""
+    tile = np.zeros(ROWS * TILE)
+    estimate(tile, joints, ranges, low, high, goals, np.zeros(len(goals)), weight, heuristic)
+    for node in range(low, high):
+        cost[node] = node_cost[node]
+        push(keys, nodes, state[HEAP_SIZE], cost[node] + heuristic[node], node)
+        state[HEAP_SIZE] += 1
+
+
+@njit(cache=True, nogil=True)
+def best_first(
+    offsets: IntArray,
+    joints: FloatArray,
+    ranges: FloatArray,
+    node_cost: FloatArray,
+    gap_weight: FloatArray,
+    steps: FloatArray,
+    step_limits: FloatArray,
+    lean: FloatArray,
+    lean_limits: FloatArray,
+    points: FloatArray,
+    goals: FloatArray,
+    goal_low: int,
+    goal_high: int,
+    heuristic_weight: FloatArray,
+    cost: FloatArray,
+    heuristic: FloatArray,
+    parent: IntArray,
+    closed: IntArray,
+    order: IntArray,
+    keys: FloatArray,
+    nodes: IntArray,
+    state: IntArray,
+    work: int,
+) -> None:
+    """Expand nodes until a goal is popped, the heap is empty or too full, or `work` is used up.
+
+    An open node that is reached more cheaply is pushed again; its earlier entry is stale and
+    is not counted when it is popped. `points` are the joints divided by their ranges.
+    """
+    tile = np.zeros(ROWS * TILE)
+    zeros = np.zeros(len(goals))
+    layers = len(offsets) - 1
+    widest = 0
+    for layer in range(layers):
+        widest = max(widest, offsets[layer + 1] - offsets[layer])
+    while state[HEAP_SIZE] > 0 and work > 0 and state[HEAP_SIZE] + widest <= len(keys):
+        node = pop(keys, nodes, state[HEAP_SIZE])
+        state[HEAP_SIZE] -= 1
+        work -= POP_WORK
+        if closed[node]:
+            continue
+        closed[node] = 1
+        order[state[EXPANDED]] = node
+        state[EXPANDED] += 1
+        if goal_low <= node < goal_high:
+            state[GOAL] = node
+            return
+        gap = np.searchsorted(offsets, node, side="right") - 1
+        state[DEEPEST] = max(state[DEEPEST], gap)
+        if gap + 1 >= layers:
+            continue
+        limits = gap_limits(gap, step_limits, lean_limits)
+        weight = gap_weight[gap]
+        start = int(offsets[gap + 1])
+        stop = offsets[gap + 2]
+        work -= stop - start
+        for target in range(start, stop):
+            if closed[target]:
+                continue
+            distance = 0.0
+            for joint in range(6):
+                distance += abs(points[target, joint] - points[node, joint])
+            reached = cost[node] + weight * distance + node_cost[target]
+            if reached >= cost[target]:
+                continue
+            allowed = True
+            if len(steps) > 0:
+                for joint in range(6):
+                    if abs(steps[target, joint] - steps[node, joint]) > limits[joint]:
+                        allowed = False
+                        break
+            if len(lean) > 0 and abs(lean[target] - lean[node]) > limits[6]:
+                allowed = False
+            if not allowed:
+                continue
+            cost[target] = reached
+            parent[target] = node
+            if heuristic[target] == UNKNOWN:
+                low = start + (target - start) // TILE * TILE
+                high = min(low + TILE, stop)
+                scale = heuristic_weight[gap + 1]
+                estimate(tile, joints, ranges, low, high, goals, zeros, scale, heuristic)
+                work -= (high - low) * len(goals)
+            push(keys, nodes, state[HEAP_SIZE], reached + heuristic[target], target)
+            state[HEAP_SIZE] += 1
+            work -= PUSH_WORK

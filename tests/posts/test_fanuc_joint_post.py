@@ -1,0 +1,225 @@
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from ls_examples import GOLDEN, golden_program, move, program
+
+from solver.errors import ModelError, UnknownNameError
+from solver.io.ls_reader import read_program
+from solver.io.posts import POSTS, PostOptions, post_named
+from solver.io.posts.fanuc_joint import render_fanuc_joint
+from solver.model.toolpath import Event, EventKind
+
+NAMES = st.from_regex(r"[A-Z][A-Z0-9_]{0,35}", fullmatch=True)
+
+
+def written(text):
+    """What stands between the numbers and the semicolons of /MN."""
+    lines = text.split("/MN\r\n")[1].split("/POS")[0].split("\r\n")[:-1]
+    return [line[5:-1] for line in lines]
+
+
+def test_the_file_equals_the_one_written_by_hand_from_the_format_description():
+    assert render_fanuc_joint(golden_program()).encode("ascii") == GOLDEN.read_bytes()
+
+
+def test_the_same_program_always_gives_the_same_bytes():
+    assert render_fanuc_joint(golden_program()) == render_fanuc_joint(golden_program())
+
+
+@given(
+    thousandths=st.lists(
+        st.tuples(*[st.integers(-720_000, 720_000)] * 6), min_size=1, max_size=5
+    )
+)
+def test_every_thousandth_of_a_degree_is_read_back_exactly(thousandths):
+    rows = [[value / 1000 for value in row] for row in thousandths]
+    text = render_fanuc_joint(program(*map(move, rows)))
+    found = read_program(text.encode(), "P.LS")
+    assert [list(one.joints_deg) for one in found.path_positions()] == rows
+    assert np.array_equal(found.path_joints(), program(*map(move, rows)).joints)
+
+
+@given(
+    degrees=st.lists(
+        st.floats(-400, 400)
+        | st.sampled_from([0.0, -0.0, -0.0004, 0.0005, -0.0005, 179.9996, -179.9996, 0.9996]),
+        min_size=6,
+        max_size=6,
+    )
+)
+def test_any_angle_is_read_back_within_half_a_thousandth_and_never_as_minus_zero(degrees):
+    text = render_fanuc_joint(program(move(degrees)))
+    found = read_program(text, "P.LS")
+    assert np.abs(np.array(found.positions[1].joints_deg) - degrees).max() <= 0.0005 + 1e-9
+    assert "-0.000" not in text
+    assert "-.000" not in text
+    assert " .000" not in text
+    fields = [part.split(" deg")[0] for part in text.split("/POS")[1].split("=")[1:]]
+    assert [len(field) for field in fields] == [10] * 6
+    assert all(field.strip()[:2] not in {"0.", "-0"} or field.strip() == "0.000" for field in fields)
+
+
+@given(name=NAMES, comment=st.text(max_size=20), remarks=st.lists(st.text(max_size=40), max_size=4))
+def test_no_text_breaks_a_file_it_is_read_back_whole_or_refused(name, comment, remarks):
+    asked = program(name=name, comment=comment, remarks=tuple(remarks))
+    try:
+        text = render_fanuc_joint(asked)
+    except ModelError as refusal:
+        assert "\n" not in str(refusal)
+        return
+    assert "; ;" not in text
+    found = read_program(text.encode("ascii"), "P.LS")
+    assert (found.name, found.comment, found.remarks) == (name, comment, tuple(remarks))
+    assert len(found.moves) == 1
+
+
+@given(
+    duration=st.floats(1e-7, 32.0),
+)
+def test_a_posted_time_is_whole_milliseconds_and_never_shorter_than_asked(duration):
+    text = render_fanuc_joint(program(move([0] * 6, duration=duration)))
+    speed = read_program(text, "P.LS").moves[0].speed
+    assert speed.unit == "msec"
+    assert speed.value == int(speed.value) >= 1
+    assert duration <= speed.value / 1000 < duration + 0.001 + 1e-12
+
+
+def test_a_time_that_is_a_decimal_number_of_milliseconds_is_not_rounded_further():
+    for count in range(1, 1000):
+        text = render_fanuc_joint(program(move([0] * 6, duration=count / 1000)))
+        assert written(text)[-1] == f"J P[1] {count}msec FINE    "
+
+
+def test_line_count_is_the_number_of_program_lines():
+    text = render_fanuc_joint(golden_program())
+    assert read_program(text, "P.LS").attributes["LINE_COUNT"] == str(len(written(text)))
+
+
+def test_frames_come_before_the_first_motion_and_are_the_same_in_every_position():
+    asked = program(move([1] * 6), move([2] * 6), uframe=3, utool=7, remarks=("a",))
+    text = render_fanuc_joint(asked)
+    assert written(text)[:4] == [
+        "  !a ",
+        "  UFRAME_NUM=3 ",
+        "  UTOOL_NUM=7 ",
+        "J P[1] 10% FINE    ",
+    ]
+    assert text.count("\tUF : 3, UT : 7,\t\r\n") == 2
+
+
+@pytest.mark.parametrize(
+    ("what", "says"),
+    [
+        ({"name": ""}, "program name"),
+        ({"name": "groove"}, "upper-case"),
+        ({"name": "1GROOVE"}, "begins with a letter"),
+        ({"name": "GROOVE-1"}, "GROOVE-1"),
+        ({"name": "GROOVE\n"}, "program name"),
+        ({"name": "ＧＲＯＯＶＥ"}, "program name"),
+        ({"name": "A" * 37}, "37 characters"),
+        ({"comment": "seventeen letters"}, "at most 16"),
+        ({"comment": 'quo"te'}, "character 4"),
+        ({"comment": "tail "}, "end with a space"),
+        ({"remarks": ("x" * 33,)}, "at most 32"),
+        ({"remarks": ("end;",)}, "character 4"),
+        ({"remarks": ("new\r\nline",)}, "printable ASCII"),
+        ({"remarks": ("Träger",)}, "'ä'"),
+        ({"remarks": (" ",)}, "end with a space"),
+        ({"uframe": -1}, "user frame"),
+        ({"uframe": 10}, "0 to 9"),
+        ({"utool": 11}, "0 to 10"),
+        ({"utool": True}, "whole number"),
+        ({"utool": 1.0}, "whole number"),
+        ({"date": "2026-11-21"}, "YY-MM-DD"),
+        ({"date": "26-02-30"}, "YY-MM-DD"),
+        ({"date": "２６-11-21"}, "YY-MM-DD"),
+        ({"time": "24:00:00"}, "HH:MM:SS"),
+        ({"time": "10:00:00\n"}, "HH:MM:SS"),
+    ],
+)
+def test_what_does_not_fit_the_format_is_refused_with_a_sentence(what, says):
+    with pytest.raises(ModelError, match=says):
+        render_fanuc_joint(program(**what))
+
+
+@pytest.mark.parametrize(
+    ("events", "says"),
+    [
+        ((Event(EventKind.DWELL, value=0.0),), "dwell must be positive"),
+        ((Event(EventKind.DWELL, value=math.nan),), "dwell must be positive"),
+        ((Event(EventKind.DWELL, value=327.671),), "at most 327.67"),
+        ((Event(EventKind.DIGITAL_OUTPUT, "x", 1.0),), "named by its number"),
+        ((Event(EventKind.DIGITAL_OUTPUT, "0", 1.0),), "digital output"),
+        ((Event(EventKind.DIGITAL_OUTPUT, "１", 1.0),), "named by its number"),
+        ((Event(EventKind.DIGITAL_OUTPUT, "1", 0.5),), "set to 0 or 1"),
+        ((Event(EventKind.CALL, "part 2"),), "program name"),
+        ((Event(EventKind.CALL, "A;B"),), "program name"),
+        ((Event(EventKind.CALL, "PROGRAM"),), "call itself"),
+    ],
+)
+def test_an_event_that_a_controller_would_refuse_is_refused_and_says_at_which_move(events, says):
+    with pytest.raises(ModelError, match=says) as caught:
+        render_fanuc_joint(program(move([0] * 6), move([1] * 6, events=events)))
+    assert str(caught.value).startswith("move 2: ")
+
+
+@pytest.mark.parametrize("duration", [32.0001, math.inf, 1e300])
+def test_a_move_that_lasts_too_long_is_refused(duration):
+    with pytest.raises(ModelError, match="move 1: "):
+        render_fanuc_joint(program(move([0] * 6, duration=duration)))
+
+
+def test_joints_that_were_not_rounded_before_they_were_checked_are_refused():
+    sharp = replace(move([0] * 6), joints=np.radians([0.0, 10.0004, 0, 0, 0, 0]))
+    with pytest.raises(ModelError, match="position 1: J2 is 10.0004"):
+        render_fanuc_joint(program(sharp))
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, 10_000.0])
+def test_joints_that_no_field_holds_are_refused(value):
+    with pytest.raises(ModelError):
+        render_fanuc_joint(program(replace(move([0] * 6), joints=np.radians([value] * 6))))
+
+
+def test_a_program_without_moves_is_refused():
+    with pytest.raises(ModelError, match="no moves"):
+        render_fanuc_joint(replace(program(), moves=()))
+
+
+def test_a_program_of_9999_lines_is_written_and_one_of_10000_refused():
+    moves = (move([0] * 6),) * 9_997
+    assert "\r\n9999:J P[9997] 10% FINE    ;\r\n" in render_fanuc_joint(program(*moves))
+    with pytest.raises(ModelError, match="10000 lines, one file takes 9999"):
+        render_fanuc_joint(program(*moves, moves[0]))
+
+
+def test_an_older_controller_takes_names_of_eight_characters():
+    options = PostOptions(name_length=8)
+    assert "/PROG  GROOVE_3\r\n" in render_fanuc_joint(golden_program(), options)
+    with pytest.raises(ModelError, match="takes 8"):
+        render_fanuc_joint(program(name="GROOVE_33"), options)
+    call = Event(EventKind.CALL, "PART_NO_2")
+    with pytest.raises(ModelError, match="takes 8"):
+        render_fanuc_joint(program(move([0] * 6, events=(call,))), options)
+
+
+def test_the_spindle_is_switched_by_the_programs_that_the_options_name():
+    moves = move([0] * 6, events=(Event(EventKind.SPINDLE_ON), Event(EventKind.SPINDLE_OFF)))
+    options = PostOptions(spindle_on="GRIND", spindle_off="REST")
+    assert written(render_fanuc_joint(program(moves), options))[-2:] == [
+        "  CALL GRIND    ",
+        "  CALL REST    ",
+    ]
+
+
+def test_posts_are_found_by_name_and_an_unknown_name_lists_the_known_ones():
+    assert post_named("fanuc-joint").render(golden_program(), PostOptions()).encode() == (
+        GOLDEN.read_bytes()
+    )
+    assert all(name == post.name for name, post in POSTS.items())
+    with pytest.raises(UnknownNameError, match="fanuc-joint"):
+        post_named("kuka")
