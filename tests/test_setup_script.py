@@ -81,7 +81,7 @@ def test_the_test_option_adds_a_display_and_the_test_tools(machine):
     done = machine.setup("--test")
     assert done.returncode == 0, done.stderr
     assert "xvfb xauth" in machine.log()
-    assert machine.log().rstrip().endswith("-e .[test]")
+    assert machine.log().rstrip().endswith("--disable-pip-version-check -e .[test]")
 
 
 def test_a_user_installs_through_sudo(machine):

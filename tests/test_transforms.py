@@ -36,7 +36,7 @@ def length(values):
 
 
 @pytest.mark.parametrize(
-    ("axis", "turn"), zip("xyz", (rotation_x, rotation_y, rotation_z), strict=True)
+    ("axis", "turn"), [("x", rotation_x), ("y", rotation_y), ("z", rotation_z)]
 )
 def test_turns_about_the_axes_equal_scipys(axis, turn):
     for value in np.linspace(-7, 7, 29):

@@ -9,12 +9,6 @@ from numpy.typing import NDArray
 
 from solver.candidates.outcomes import Outcome
 from solver.collision.kernels_scene import FREE, HIT, MARGIN_BROKEN
-from solver.collision.mesh_distance import (
-    ConvexProxy,
-    MeshObstacle,
-    lower_bound,
-    mesh_clearance,
-)
 from solver.collision.scene import CLEARANCE, CONTACT, CollisionScene, MeshRule
 from solver.kinematics.kernels_arm import forward_frames
 from solver.progress import Monitor, checkpoint
@@ -25,9 +19,15 @@ class MeshChecker:
     """Distances of the moving bodies to the scene's meshes (through python-fcl)."""
 
     def __init__(self, scene: CollisionScene) -> None:
+        # python-fcl and trimesh are loaded only where a scene holds meshes.
+        from solver.collision import mesh_distance, mesh_proxy  # noqa: PLC0415
+
         self._scene = scene
-        self._obstacles = [MeshObstacle(mesh, pose) for _, mesh, pose in scene.meshes]
-        self._proxies = [ConvexProxy(shape) for shape in scene.shapes]
+        self._bound, self._measure = mesh_distance.lower_bound, mesh_distance.mesh_clearance
+        self._obstacles = [
+            mesh_distance.MeshObstacle(mesh, pose) for _, mesh, pose in scene.meshes
+        ]
+        self._proxies = [mesh_proxy.ConvexProxy(shape) for shape in scene.shapes]
 
     def apply(
         self,
@@ -80,9 +80,9 @@ class MeshChecker:
             pose = self._pose(frames, rule.row)
             proxy, obstacle = self._proxies[rule.row], self._obstacles[rule.mesh]
             least = self._least(rule, touch)
-            if lower_bound(proxy, pose, obstacle) > max(least, best if rule.counts else least):
+            if self._bound(proxy, pose, obstacle) > max(least, best if rule.counts else least):
                 continue
-            found = mesh_clearance(proxy, pose, obstacle)
+            found = self._measure(proxy, pose, obstacle)
             if rule.counts:
                 if found.distance < best:
                     best = found.distance
@@ -107,7 +107,7 @@ class MeshChecker:
         forward_frames(arm, model, frames)
         for rule in self._scene.mesh_rules:
             pose = self._pose(frames, rule.row)
-            found = mesh_clearance(self._proxies[rule.row], pose, self._obstacles[rule.mesh])
+            found = self._measure(self._proxies[rule.row], pose, self._obstacles[rule.mesh])
             kind = Outcome.COLLISION if rule.counts else Outcome.MARGIN
             margin = found.distance - (0.0 if rule.counts else self._least(rule, touch))
             rows.append(make(kind, margin, " and ".join(self._names(rule)), _points(found)))
@@ -136,4 +136,4 @@ class MeshChecker:
 
 
 def _points(found: object) -> FloatArray:
-    return np.array([found.point_a, found.point_b])  # type: ignore[attr-defined]
+    return np.array([found.point_on_body, found.point_on_mesh])  # type: ignore[attr-defined]

@@ -68,7 +68,7 @@ def read_series(path: Path) -> tuple[BeamEntry, ...]:
 
 
 def read_dimensions(table: Table, name: str, source: str = "") -> BeamSection:
-    """Read an H section from the dimensions of a table; without a root radius it has sharp roots."""
+    """Read an H section from its dimensions; without a root radius it has sharp roots."""
     with table.located():
         return BeamSection(
             name=name,

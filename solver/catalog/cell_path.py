@@ -1,8 +1,15 @@
-"""The path of a cell: a file, or a line across the web that follows the section.
+"""The path of a cell: a file, a line on a face of the beam, or parallel passes along it.
 
-The table `path` holds one of `file`, `web_line` and `parametric`, and beside it what the file does
-not say itself: `frame`, `unit`, `orientation_wpr_deg` with `orientation_frame`, `feed_mm_s`,
-`touches`, `lean_deg`, `lead_deg`, `resample_mm`.
+The table `path` holds one of
+
+- `file`: a path file, relative to the cell's file;
+- `line`: one straight pass on a face; with `from_share` and `to_share` it follows the section, so
+  that another beam has the same path in proportion;
+- `parametric`: one or several passes along a face, at a distance from an edge.
+
+Beside it stands what the path does not say itself: `frame` and `unit` of a file,
+`orientation_wpr_deg` stated in `orientation_frame`, `touches`, `resample_mm`, `feed_mm_s`,
+`lean_deg`, `lead_deg`, `convention`.
 """
 
 from __future__ import annotations
@@ -15,19 +22,25 @@ import numpy as np
 
 from solver.catalog.bodies import read_rotation
 from solver.catalog.toml_reader import Table
-from solver.io.importers import ImportOptions, load_toolpath
+from solver.io.importers import (
+    FaceLine,
+    ImportOptions,
+    ParametricPath,
+    face_line_toolpath,
+    load_toolpath,
+    parametric_toolpath,
+)
+from solver.io.importers.options import CONVENTIONS, LENGTH_UNITS, MAX_FEED, MAX_NOMINAL
+from solver.io.importers.parametric import MAX_POINTS
 from solver.model.robot import Robot
 from solver.model.tool import Tool
-from solver.model.toolpath import Frame, Pass, Role, Toolpath
-from solver.model.workpiece import BeamSection, Workpiece
-from solver.transforms import FloatArray, rigid
-from solver.units import MM
+from solver.model.toolpath import Frame, Toolpath
+from solver.model.workpiece import Workpiece
+from solver.transforms import FloatArray
+from solver.units import DEG, MM
 
 FRAMES: Final = tuple(frame.value for frame in Frame)
-KINDS: Final = ("file", "web_line")
-MAXIMUM_POINTS: Final = 200_000
-MAXIMUM_FEED: Final = 10.0
-"""Largest feed that is taken for a feed [m/s]."""
+KINDS: Final = ("file", "line", "parametric")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,21 +79,24 @@ def read_path(table: Table, owner: PathOwner, override: Path | None = None) -> T
         If the table or the path file is unusable.
     """
     kinds = [key for key in KINDS if table.has(key)]
-    if len(kinds) != 1:
-        found = " and ".join(kinds) if kinds else "none"
-        raise table.error(None, f"expected one of the keys {', '.join(KINDS)}, found {found}")
+    if not kinds:
+        table.get("file", f"one of the keys {', '.join(KINDS)}")
+    if len(kinds) > 1:
+        raise table.error(kinds[1], f"expected no second path beside {kinds[0]!r}")
     orientation = _orientation(table)
-    options = _options(table, owner)
+    with table.located():
+        options = _options(table, owner)
     frame = _frame(table, "frame")
-    own = None
-    if kinds[0] == "web_line":
-        own = _web_line(table, owner, options, orientation)
-    file = table.text("file") if kinds[0] == "file" else ""
+    spec = _path_spec(table, kinds[0], options, orientation)
+    table.finish()
     if override is not None:
         return _load(override, options, orientation, owner)
-    if own is not None:
-        return own
-    return _load(table.folder / file, replace(options, frame=frame), orientation, owner)
+    if isinstance(spec, Path):
+        return _load(spec, replace(options, frame=frame), orientation, owner)
+    with table.located(kinds[0]):
+        if isinstance(spec, FaceLine):
+            return face_line_toolpath(owner.workpiece, spec)
+        return parametric_toolpath(owner.workpiece, spec)
 
 
 def _load(
@@ -88,12 +104,12 @@ def _load(
 ) -> Toolpath:
     if orientation is None:
         return load_toolpath(path, options)
-    options = replace(options, orientation=orientation.rotation)
-    toolpath = load_toolpath(path, options)
+    toolpath = load_toolpath(path, replace(options, orientation=orientation.rotation))
     stated = orientation.frame or toolpath.frame
     turned = owner.rotation_in(toolpath.frame, stated, orientation.rotation)
     if np.array_equal(turned, orientation.rotation):
         return toolpath
+    # Only now is the file's frame known, in which the importer takes the orientation.
     return load_toolpath(path, replace(options, orientation=turned))
 
 
@@ -110,12 +126,12 @@ def _orientation(table: Table) -> _Orientation | None:
 
 def _options(table: Table, owner: PathOwner) -> ImportOptions:
     default = ImportOptions()
-    unit = table.choice("unit", ("mm", "m")) if table.has("unit") else None
-    limit = 90.0
+    limit = MAX_NOMINAL / DEG
     return ImportOptions(
-        unit=unit,
+        unit=table.choice("unit", tuple(LENGTH_UNITS)) if table.has("unit") else None,
+        convention=table.choice("convention", CONVENTIONS, default.convention),
         feed=_feed(table, default.feed),
-        touches=_touches(table, owner.workpiece),
+        touches=table.choice("touches", owner.workpiece.groups) if table.has("touches") else "",
         lean=table.number("lean_deg", default.lean, low=-limit, high=limit),
         lead=table.number("lead_deg", default.lead, low=-limit, high=limit),
         resample=_positive(table, "resample_mm") if table.has("resample_mm") else None,
@@ -128,8 +144,8 @@ def _feed(table: Table, default: float) -> float:
     if not table.has("feed_mm_s"):
         return default
     feed = _positive(table, "feed_mm_s")
-    if feed > MAXIMUM_FEED:
-        raise table.error("feed_mm_s", f"expected at most {MAXIMUM_FEED / MM:g} mm/s")
+    if feed > MAX_FEED:
+        raise table.error("feed_mm_s", f"expected at most {MAX_FEED / MM:g} mm/s")
     return feed
 
 
@@ -140,55 +156,65 @@ def _positive(table: Table, key: str) -> float:
     return value
 
 
-def _touches(table: Table, workpiece: Workpiece) -> str:
-    if not table.has("touches"):
-        return ""
-    return table.choice("touches", workpiece.groups)
+def _path_spec(
+    table: Table, kind: str, options: ImportOptions, orientation: _Orientation | None
+) -> Path | FaceLine | ParametricPath:
+    if kind == "file":
+        return table.folder / table.text("file")
+    own = table.table(kind)
+    with own.located():
+        if kind == "line":
+            return _line(own, options, orientation)
+        if orientation is not None:
+            raise table.error(
+                "orientation_wpr_deg",
+                "passes along a beam take their orientation from face and travel; leave it out",
+            )
+        return _parametric(own, options)
 
 
-def _web_line(
-    table: Table, owner: PathOwner, options: ImportOptions, orientation: _Orientation | None
-) -> Toolpath:
-    """Build a straight pass over the web, in shares of the section: it follows another beam.
-
-    `from_along_mm` and `to_along_mm` run along the beam from its middle, `from_across` and
-    `to_across` from the middle of the web (0) to the inside of a flange (+-1: H/2 - t2), on the
-    web's `side` ('left': +y, 'right': -y), `lift_mm` above its face, in `points` equal steps.
-    """
-    line = table.table("web_line")
-    section = owner.workpiece.section
-    if section is None:
-        raise line.error(None, "a line across the web needs an H section as workpiece")
-    ends = [
-        (line.number(f"{end}_along_mm"), line.number(f"{end}_across", low=-1.0, high=1.0))
-        for end in ("from", "to")
-    ]
-    side = 1.0 if line.choice("side", ("left", "right"), "left") == "left" else -1.0
-    lift = line.number("lift_mm", 0.0)
-    count = line.integer("points", 2, MAXIMUM_POINTS)
-    name = line.text("name", "web line")
-    if orientation is None:
-        raise table.error("orientation_wpr_deg", "the key is missing; a web_line needs it")
-    start, end = (_on_web(section, along, across, side, lift) for along, across in ends)
-    if not np.linalg.norm(end - start) > 0.0:
-        raise line.error("to_along_mm", "the line ends where it starts; expected another point")
-    rotation = owner.rotation_in(Frame.BEAM, orientation.frame or Frame.BEAM, orientation.rotation)
-    share = np.arange(count)[:, None] / (count - 1)
-    poses = np.array([rigid(rotation, point) for point in start + (end - start) * share])
-    one = Pass(
-        poses=poses,
-        roles=(Role.CONTACT,) * count,
-        feed=options.feed,
+def _line(table: Table, options: ImportOptions, orientation: _Orientation | None) -> FaceLine:
+    """Read a line: `from_share`, `to_share` of the face, or `from_offset_mm`, `to_offset_mm`."""
+    relative = table.has("from_share") or table.has("to_share")
+    across = ("from_share", "to_share") if relative else ("from_offset_mm", "to_offset_mm")
+    frame = Frame.BEAM
+    if orientation is not None and orientation.frame not in (None, Frame.BEAM):
+        frame = Frame.FLOOR  # parallel to fanuc_world
+    return FaceLine(
+        face=table.text("face"),
+        start=(table.number("from_along_mm"), table.number(across[0])),
+        end=(table.number("to_along_mm"), table.number(across[1])),
+        points=table.integer("points", 2, MAX_POINTS),
+        relative=relative,
+        edge="" if relative else table.text("edge", ""),
+        lift=table.number("lift_mm", 0.0, low=0.0),
+        orientation=None if orientation is None else orientation.rotation,
+        orientation_frame=frame,
         lean=options.lean,
         lead=options.lead,
-        touches=options.touches,
-        name=name,
+        feed=options.feed,
+        convention=options.convention,
+        name=table.text("name", "line"),
     )
-    return Toolpath((one,), Frame.BEAM, source=name)
 
 
-def _on_web(
-    section: BeamSection, along: float, across: float, side: float, lift: float
-) -> FloatArray:
-    reach = section.height / 2.0 - section.flange
-    return np.array([along, side * (section.web / 2.0 + lift), across * reach])
+def _parametric(table: Table, options: ImportOptions) -> ParametricPath:
+    return ParametricPath(
+        face=table.text("face"),
+        start=table.number("from_along_mm"),
+        end=table.number("to_along_mm"),
+        offset=table.number("offset_mm"),
+        edge=table.text("edge", ""),
+        points=table.integer("points", 2, MAX_POINTS) if table.has("points") else None,
+        step=_positive(table, "step_mm") if table.has("step_mm") else None,
+        passes=table.integer("passes", 1, MAX_POINTS, 1),
+        spacing=table.number("spacing_mm", 0.0),
+        zigzag=table.boolean("zigzag", True),
+        turn_with_travel=table.boolean("turn_with_travel", True),
+        lift=table.number("lift_mm", 0.0, low=0.0),
+        lean=options.lean,
+        lead=options.lead,
+        feed=options.feed,
+        convention=options.convention,
+        name=table.text("name", "pass"),
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 
@@ -68,8 +68,11 @@ def load_cell(
     head = document.table("cell")
     name, title = head.name("name"), head.text("title")
     robot_table = document.table("robot")
-    robot = load_robot(robot_table.text("model"), relative_to=document.folder)
-    tool = load_tool(document.table("tool").text("model"), relative_to=document.folder)
+    with robot_table.located("model"):
+        robot = load_robot(robot_table.text("model"), relative_to=document.folder)
+    tool_table = document.table("tool")
+    with tool_table.located("model"):
+        tool = load_tool(tool_table.text("model"), relative_to=document.folder)
     workpiece = _workpiece(document.table("beam"), beam, robot)
     fixtures = _fixtures(document, head)
     owner = PathOwner(workpiece, robot, tool)
@@ -150,6 +153,7 @@ def _workpiece(table: Table, beam: str | Path | BeamSection | None, robot: Robot
     position = _position(table, section, length, rotation)
     if table.choice("frame", PLACEMENT_FRAMES, Frame.FLOOR.value) == Frame.FANUC_WORLD.value:
         position = position + np.array([0.0, 0.0, robot.world_height])
+    table.finish()
     with table.located():
         return beam_workpiece(section, length, rigid(rotation, position), fillets)
 
@@ -160,7 +164,8 @@ def _section(table: Table) -> BeamSection:
         name = table.name("section") if table.has("section") else "custom"
         return read_dimensions(table, name, "stated by the cell")
     name = table.text("section")
-    section = load_beam(name, relative_to=table.folder)
+    with table.located("section"):
+        section = load_beam(name, relative_to=table.folder)
     if not table.has("root_mm"):
         return section
     with table.located("root_mm"):
@@ -182,7 +187,7 @@ def _position(
 
     The second rule keeps the beam on its supports when another section takes its place.
     """
-    if table.has("lower_edge_mm"):
+    if table.has("lower_edge_mm") or table.has("position_xy_mm"):
         x, y = table.numbers("position_xy_mm", 2)
         half = np.array([length, section.width, section.height]) / 2.0
         reach = float(np.abs(rotation[2]) @ half)
@@ -210,9 +215,8 @@ def _fixture(table: Table) -> Body:
 
     name = table.name("name")
     group = table.name("group") if table.has("group") else name
-    unit = table.choice("unit", ("mm", "m"), "mm")
+    unit: Literal["mm", "m"] = "mm" if table.choice("unit", ("mm", "m"), "mm") == "mm" else "m"
     position = table.numbers("position_mm", 3, (0.0, 0.0, 0.0))
     pose = rigid(read_rotation(table), position)
-    mesh = load_mesh(table.folder / table.text("mesh"), unit)
-    with table.located():
-        return Body(name, mesh, pose, group)
+    with table.located("mesh"):
+        return Body(name, load_mesh(table.folder / table.text("mesh"), unit), pose, group)

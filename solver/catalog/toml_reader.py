@@ -146,13 +146,14 @@ class Table:
 
     @contextmanager
     def located(self, key: str | None = None) -> Iterator[None]:
-        """Give errors of the model that are raised inside the place of this table."""
+        """Give errors without a place that are raised inside the place of this table."""
         try:
             yield
-        except ModelError as error:
+        except InputError as error:
             if error.place is not None:
                 raise
-            raise ModelError(error.message, self.place(key)) from None
+            kind = ModelError if isinstance(error, ModelError) else InputError
+            raise kind(error.message, self.place(key)) from None
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -218,7 +219,7 @@ class Table:
     def integer(self, key: str, low: int, high: int, default: Any = _REQUIRED) -> int:
         """Read a whole number in low..high."""
         value = self.get(key, f"a whole number {low} to {high}", default)
-        return int(value) if value is default else self._integer(key, value, low, high)
+        return value if value is default else self._integer(key, value, low, high)
 
     def integers(
         self, key: str, low: int, high: int, count: int | None = None, default: Any = _REQUIRED
@@ -242,7 +243,7 @@ class Table:
         return value if value is default else self._number(key, value, low, high)
 
     def numbers(self, key: str, count: int, default: Any = _REQUIRED) -> tuple[float, ...]:
-        """Read a list of `count` finite numbers, in the unit that the key names (converted to SI)."""
+        """Read a list of `count` finite numbers, in the unit that the key names, as SI."""
         values = self._list(key, f"numbers{_unit_words(key)}", count, default)
         if values is default:
             return values  # type: ignore[no-any-return]

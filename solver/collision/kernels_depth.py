@@ -11,7 +11,6 @@ import math
 from numba import njit
 
 from solver.collision.kernels_gjk import dot, gjk, minus, norm, scaled, separation
-from solver.collision.kernels_shapes import BOX, CYLINDER
 
 IMPROVEMENTS = 8
 
@@ -50,7 +49,7 @@ def _direction(number, r, t, hint):
 
 @njit(cache=True, nogil=True)
 def overlap(a, vertices_a, r, t, b, vertices_b, hint):
-    """Best signed gap found over candidate directions, and that unit direction from B to A."""
+    """Best signed gap found, its unit direction from B to A, and the deepest points of A and B."""
     best, n = -math.inf, (0.0, 0.0, 1.0)
     for number in range(19):
         d = _direction(number, r, t, hint)
@@ -62,18 +61,17 @@ def overlap(a, vertices_a, r, t, b, vertices_b, hint):
             gap = separation(a, vertices_a, r, t, b, vertices_b, u)
             if gap > best:
                 best, n = gap, u
-    if b[0] == BOX and a[0] != CYLINDER and a[0] <= BOX:
-        return best, n
-    # Drawn apart along n by a little more than the overlap, the bodies are separated; the
-    # direction between their nearest points then overlaps by no more than n does.
+    # Drawn apart along n by more than the overlap, the bodies are separated; the direction
+    # between their nearest points then overlaps by no more than n does, and once it is n
+    # itself those points, drawn back, are the deepest ones.
+    pa, pb = t, t
     for _ in range(IMPROVEMENTS):
-        if best >= 0.0:
-            break
         draw = 1e-6 - 1.5 * best
         apart = (t[0] + draw * n[0], t[1] + draw * n[1], t[2] + draw * n[2])
-        _, u, _, _ = gjk(a, vertices_a, r, apart, b, vertices_b, n, math.inf)
+        _, u, pa, pb = gjk(a, vertices_a, r, apart, b, vertices_b, n, math.inf)
+        pa = minus(pa, scaled(draw, n))
         gap = separation(a, vertices_a, r, t, b, vertices_b, u)
         if gap <= best + 1e-9:
             break
         best, n = gap, u
-    return best, n
+    return best, n, pa, pb

@@ -36,7 +36,6 @@ from solver.collision.kernels_shapes import (
     SPHERE,
     body_numbers,
     core_radius,
-    core_support,
     rotation_numbers,
     row_of_rotations,
     row_of_vectors,
@@ -125,9 +124,7 @@ def _core_distance(a, vertices_a, r, t, b, vertices_b, cutoff, wants_depth):
             return bound, n, pa, pb
     if not wants_depth:
         return -TOUCH, n, t, t
-    bound, n = overlap(a, vertices_a, r, t, b, vertices_b, n)
-    pa = support_of_first(a, vertices_a, r, t, (-n[0], -n[1], -n[2]))
-    pb = core_support(b, vertices_b, n[0], n[1], n[2])
+    bound, n, pa, pb = overlap(a, vertices_a, r, t, b, vertices_b, n)
     return min(bound, 0.0), n, pa, pb
 
 
@@ -242,7 +239,7 @@ def convex_distance(
         Origin of each body in the world [m].
     witness : (2, 3) array
         Receives the nearest points of A and B in the world frame [m]; of bodies that overlap,
-        their deepest points along the direction of least overlap found.
+        their deepest points, as far apart as the depth.
 
     Returns
     -------

@@ -88,10 +88,10 @@ def _fixed_bound(scene, rotations, positions, m, f):
         scene.moving.size[m],
         rotations[m],
         positions[m],
-        scene.fixed.kind[f],
-        scene.fixed.size[f],
-        scene.fixed.rotation[f],
-        scene.fixed.position[f],
+        scene.bound.kind[f],
+        scene.bound.size[f],
+        scene.bound.rotation[f],
+        scene.bound.position[f],
     )
 
 

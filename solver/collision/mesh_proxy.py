@@ -100,9 +100,7 @@ class ConvexProxy:
         return bool(((points @ self.normals.T) < self.offsets).all(axis=1).any())
 
 
-def _polyhedron(
-    shape: ConvexShape, tolerance: float
-) -> tuple[FloatArray, IntArray, float, float]:
+def _polyhedron(shape: ConvexShape, tolerance: float) -> tuple[FloatArray, IntArray, float, float]:
     """Vertices (k, 3) and faces (m, 3) of the containing polyhedron, radius and excess [m]."""
     match shape:
         case Sphere(radius):
@@ -114,12 +112,17 @@ def _polyhedron(
             excess = radius / math.cos(math.pi / sides) - radius
             return *_prism(radius, sides, 0.5 * length), 0.0, excess
         case Box(size):
-            vertices, faces = _prism(1.0, 4, 1.0)
-            return np.sign(np.round(vertices)) * 0.5 * size, faces, 0.0, 0.0
+            return *box_triangles(size), 0.0, 0.0
         case Hull(vertices):
             faces, grown = hull_triangles(vertices)
             return grown, faces, 0.0, float(np.linalg.norm(grown - vertices, axis=1).max())
     raise ModelError(f"a {type(shape).__name__.lower()} is no convex body")
+
+
+def box_triangles(size: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Vertices (8, 3) and faces (12, 3) of a box about the origin, `size` (3,) [m]."""
+    vertices, faces = _prism(1.0, 4, 1.0)
+    return np.sign(vertices) * 0.5 * size, faces
 
 
 def _tetrahedron() -> tuple[FloatArray, IntArray]:

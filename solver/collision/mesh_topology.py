@@ -1,4 +1,4 @@
-"""What makes a triangle soup a solid: welding, closed edges, one winding, bodies, winding number."""
+"""What makes triangles a solid: welding, closed edges, one winding, bodies, inside and outside."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import math
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from solver.errors import InputError, Place
 from solver.model.shapes import Mesh
@@ -35,7 +34,22 @@ class Bodies(NamedTuple):
     volume: FloatArray
 
 
-def closed_mesh(vertices: FloatArray, faces: IntArray, place: Place | None = None) -> Mesh:
+class TriangleField(NamedTuple):
+    """Triangles `corners` (m, 3, 3) and the box `low`, `high` (m, 3) of each [m]."""
+
+    corners: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+
+def triangle_field(corners: FloatArray) -> TriangleField:
+    """Triangles (m, 3, 3) with their boxes, for many questions about inside and outside."""
+    return TriangleField(corners, corners.min(axis=1), corners.max(axis=1))
+
+
+def closed_mesh(
+    vertices: FloatArray, faces: IntArray, place: Place | None = None
+) -> tuple[Mesh, Bodies]:
     """Make a solid from triangles, or say in one sentence why they are none.
 
     Equal vertices are welded, triangles that have collapsed to a line between two vertices are
@@ -49,6 +63,11 @@ def closed_mesh(vertices: FloatArray, faces: IntArray, place: Place | None = Non
         Rows of `vertices`.
     place : Place, optional
         Named in the error.
+
+    Returns
+    -------
+    Mesh, Bodies
+        The solid, and the separate closed pieces of its surface.
 
     Raises
     ------
@@ -73,7 +92,7 @@ def closed_mesh(vertices: FloatArray, faces: IntArray, place: Place | None = Non
         faces = faces[:, ::-1]
         bodies = Bodies(bodies.label, -bodies.volume)
     _check_volume(vertices, faces, bodies, place)
-    return Mesh(vertices, faces)  # type: ignore[arg-type]
+    return Mesh(vertices, faces), bodies
 
 
 def _check_numbers(vertices: FloatArray, faces: IntArray, place: Place | None) -> None:
@@ -116,8 +135,8 @@ def _check_extent(vertices: FloatArray, place: Place | None) -> None:
     extent = float(np.ptp(vertices, axis=0).max())
     if not SMALLEST_EXTENT <= extent <= LARGEST_EXTENT:
         raise InputError(
-            f"the mesh is {extent * MM_PER_M:g} mm long, expected "
-            f"{SMALLEST_EXTENT * MM_PER_M:g} to {LARGEST_EXTENT * MM_PER_M:g} mm; is its unit right?",
+            f"the mesh is {extent * MM_PER_M:g} mm long, expected {SMALLEST_EXTENT * MM_PER_M:g} "
+            f"to {LARGEST_EXTENT * MM_PER_M:g} mm; is its unit right?",
             place,
         )
 
@@ -173,7 +192,8 @@ def split_bodies(vertices: FloatArray, faces: IntArray, pairs: IntArray) -> Bodi
     centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     p, q, r = (vertices[faces[:, corner]] - centre for corner in range(3))
     parts = np.einsum("ij,ij->i", p, np.cross(q, r)) / 6.0
-    return Bodies(label, np.bincount(label, weights=parts))
+    volume = np.bincount(label, weights=parts).astype(np.float64)
+    return Bodies(label.astype(np.int64), volume)
 
 
 def _check_volume(
@@ -228,27 +248,26 @@ def winding_numbers(points: FloatArray, triangles: FloatArray) -> FloatArray:
     return totals / (2.0 * math.pi)
 
 
-def is_inside(point: FloatArray, triangles: FloatArray) -> bool:
-    """Whether a point off the surface lies inside closed, outward wound triangles (m, 3, 3).
+def is_inside(point: FloatArray, field: TriangleField) -> bool:
+    """Whether a point (3,) off the surface lies inside closed, outward wound triangles.
 
     Counts the signed crossings of a ray along an axis; where a ray grazes an edge the next
     axis is tried, and after the third the solid angles decide.
     """
     for axis in (2, 0, 1):
-        crossings = _ray_crossings(point, triangles, axis)
+        crossings = _ray_crossings(point, field, axis)
         if crossings is not None:
             return crossings > 0
-    return bool(winding_numbers(point[None], triangles)[0] > 0.5)
+    return bool(winding_numbers(point[None], field.corners)[0] > 0.5)
 
 
-def _ray_crossings(point: FloatArray, triangles: FloatArray, axis: int) -> int | None:
+def _ray_crossings(point: FloatArray, field: TriangleField, axis: int) -> int | None:
     """Signed crossings of the ray from `point` along +axis; None where one is undecided."""
     u, v = (axis + 1) % 3, (axis + 2) % 3
-    met: NDArray[np.bool_] = triangles[:, :, axis].max(axis=1) >= point[axis]
+    met = field.high[:, axis] >= point[axis]
     for across in (u, v):
-        column = triangles[:, :, across]
-        met &= (column.min(axis=1) <= point[across]) & (column.max(axis=1) >= point[across])
-    local = triangles[met] - point
+        met &= (field.low[:, across] <= point[across]) & (field.high[:, across] >= point[across])
+    local = field.corners[met] - point
     if len(local) == 0:
         return 0
     a, b, c = local[:, 0], local[:, 1], local[:, 2]

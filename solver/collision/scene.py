@@ -23,7 +23,7 @@ from solver.collision.distance import pack_shape
 from solver.kinematics.arm import link_offsets
 from solver.model.problem import PlanningProblem
 from solver.model.shapes import Body, Box, ConvexShape, Hull, Mesh, Sphere, ToolRole
-from solver.transforms import FloatArray, IntArray, inverse
+from solver.transforms import FloatArray, IntArray, inverse, rigid
 
 NO_PAIR, CLEARANCE, MARGIN, CONTACT = 0, 1, 2, 3
 TOOL_GROUP = "tool"
@@ -45,7 +45,8 @@ class PackedBodies(NamedTuple):
 class PackedScene(NamedTuple):
     """What the kernels read; all poses of fixed bodies are in fanuc_world.
 
-    `frame` (m,) is the D-H frame that carries each moving body. Fixed bodies are ordered by
+    `frame` (m,) is the D-H frame that carries each moving body. `bound` holds a simple body
+    around each fixed one, for culling: itself, or a box for a hull. Fixed bodies are ordered by
     cluster; `cluster_*` are boxes around them for culling. `rule`, `threshold` are (m, f);
     `touch_group` (f,) numbers the workpiece's groups (-1 elsewhere); `depth` (m,) belongs to
     contact bodies; `self_pairs` (p, 2) are rows of the moving bodies.
@@ -54,6 +55,7 @@ class PackedScene(NamedTuple):
     frame: IntArray
     moving: PackedBodies
     fixed: PackedBodies
+    bound: PackedBodies
     cluster_half: FloatArray
     cluster_rotation: FloatArray
     cluster_position: FloatArray
@@ -150,6 +152,7 @@ def build_scene(problem: PlanningProblem) -> CollisionScene:
         frame=np.array([frame for _, frame, _, _ in moving], np.int64),
         moving=_pack([(shape, pose) for _, _, shape, pose in moving]),
         fixed=_pack([(shape, pose) for _, shape, pose in fixed]),
+        bound=_pack([_simple_bound(shape, pose) for _, shape, pose in fixed]),
         cluster_half=np.array([half for half, _ in boxes]).reshape(-1, 3),
         cluster_rotation=np.array([pose[:3, :3] for _, pose in boxes]).reshape(-1, 3, 3),
         cluster_position=np.array([pose[:3, 3] for _, pose in boxes]).reshape(-1, 3),
@@ -291,6 +294,14 @@ def _pack(bodies: list[tuple[ConvexShape, FloatArray]]) -> PackedBodies:
         stop=stop,
         vertices=np.concatenate(vertices) if vertices else np.zeros((0, 3)),
     )
+
+
+def _simple_bound(shape: ConvexShape, pose: FloatArray) -> tuple[ConvexShape, FloatArray]:
+    """The shape itself, or for a hull the box along its own axes that contains it."""
+    if not isinstance(shape, Hull):
+        return shape, pose
+    low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
+    return Box(high - low), pose @ rigid(position=(low + high) / 2)
 
 
 def _enclosing_box(

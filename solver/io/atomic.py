@@ -39,7 +39,7 @@ def staged(path: Path, data: bytes) -> Iterator[Path]:
         yield temporary
         try:
             temporary.replace(target)
-        except OSError as error:
+        except (OSError, ValueError) as error:
             raise _cannot_write(target, error) from error
     except BaseException:
         with contextlib.suppress(OSError):
@@ -51,6 +51,8 @@ def staged(path: Path, data: bytes) -> Iterator[Path]:
 def _checked_target(path: Path) -> Path:
     """Return `path` as absolute, so that a change of folder meanwhile cannot move the file."""
     try:
+        if "\0" in str(path):
+            raise ValueError("a file name holds no null character")
         target = Path(path).absolute()
         if target.is_dir():
             raise InputError("is a folder, a file name was expected", Place(str(path)))
@@ -74,8 +76,9 @@ def _write_through(temporary: Path, data: bytes, target: Path) -> None:
         raise _cannot_write(target, error) from error
 
 
-def _cannot_write(target: Path, error: OSError) -> InputError:
-    return InputError(f"cannot be written ({error.strerror or error})", Place(str(target)))
+def _cannot_write(target: Path, error: OSError | ValueError) -> InputError:
+    reason = getattr(error, "strerror", None) or str(error)
+    return InputError(f"cannot be written ({reason})", Place(str(target)))
 
 
 def _flush_folder(folder: Path) -> None:

@@ -139,11 +139,11 @@ def _sections(source: SourceText) -> dict[str, _Section]:
         if name != "PROG" and source.text[heading.end() : end].strip(" \t"):
             raise InputError(f"text after /{name}", source.place(heading.end()))
         found.append((name, heading.end(), start, min(end + 1, len(source.text))))
-    ends = [start for _, _, start, _ in found[1:]] + [len(source.text)]
-    sections = {
-        name: _Section(heading, body, end)
-        for (name, heading, _, body), end in zip(found, ends, strict=True)
-    }
+    sections: dict[str, _Section] = {}
+    end = len(source.text)
+    for name, heading_end, start, body in reversed(found):
+        sections[name] = _Section(heading_end, body, end)
+        end = start
     for needed in _NEEDED:
         if needed not in sections:
             raise InputError(

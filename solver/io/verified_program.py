@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Iterator
+from fractions import Fraction
 from pathlib import Path
 from typing import Final
 
@@ -24,14 +24,11 @@ _WAIT: Final = re.compile(r"WAIT +([0-9]*\.[0-9]+)\(sec\)")
 _OUTPUT: Final = re.compile(r"DO\[([0-9]+)\]=(ON|OFF)")
 _CALL: Final = re.compile(r"CALL ([A-Z][A-Z0-9_]*)")
 
-WAIT_STEP: Final = 0.01
+WAIT_STEP: Final = Fraction(1, 100)
 """Unit in which a controller waits [s]."""
 
-MOTION_STEP: Final = 1e-3
+MOTION_STEP: Final = Fraction(1, 1000)
 """Unit in which a motion time is posted [s]."""
-
-TIME_SLACK: Final = 1e-9
-"""How much shorter than asked a posted time may be [s]: the last bit of a binary number."""
 
 
 def write_verified(
@@ -76,20 +73,27 @@ def write_verified(
             f"{program.name}{post.suffix}, not {path.name}",
             Place(str(path)),
         )
-    text = post.render(program, options)
-    with staged(path, text.encode("ascii")) as temporary:
-        found = _read_back(temporary, path)
+    data = post.render(program, options).encode("ascii")
+    with staged(path, data) as temporary:
+        found = _read_back(temporary, path, data)
         for difference in differences(program, found, options):
             raise RefusedError(f"{path.name} was not written: read back, {difference}")
         verify(found)
     return found
 
 
-def _read_back(temporary: Path, path: Path) -> ProgramFile:
+def _read_back(temporary: Path, path: Path, data: bytes) -> ProgramFile:
     try:
-        return read_program(temporary.read_bytes(), path.name)
+        on_disk = temporary.read_bytes()
+        found = read_program(on_disk, path.name)
     except (OSError, InputError) as error:
         raise RefusedError(f"{path.name} was not written: read back, {error}") from error
+    if on_disk != data:
+        raise RefusedError(
+            f"{path.name} was not written: read back, its {len(on_disk)} bytes differ from the "
+            f"{len(data)} that were sent to the disk"
+        )
+    return found
 
 
 def differences(
@@ -128,7 +132,7 @@ def _header_differences(program: JointProgram, found: ProgramFile) -> Iterator[s
         ("its motion group", found.attributes.get("DEFAULT_GROUP"), "1,*,*,*,*"),
     ):
         if value != expected:
-            yield f"{what} is {value!r} instead of {expected!r}"
+            yield f"{what} reads {value!r} instead of {expected!r}"
     for expected_number, one in enumerate(found.instructions, start=1):
         if one.number != expected_number:
             yield f"line {one.place.line} has number {one.number} instead of {expected_number}"
@@ -159,9 +163,9 @@ def _same(actual: tuple[object, ...], expected: tuple[object, ...]) -> bool:
     if actual[0] == expected[0] == "wait":
         posted, asked = actual[1], expected[1]
         return (
-            isinstance(posted, float)
-            and isinstance(asked, int | float)
-            and -TIME_SLACK <= posted - asked <= WAIT_STEP + TIME_SLACK
+            isinstance(posted, Fraction)
+            and isinstance(asked, Fraction)
+            and 0 <= posted - asked < WAIT_STEP
         )
     return actual == expected
 
@@ -169,7 +173,7 @@ def _same(actual: tuple[object, ...], expected: tuple[object, ...]) -> bool:
 def _event_meaning(event: Event, options: PostOptions) -> tuple[object, ...]:
     match event.kind:
         case EventKind.DWELL:
-            return ("wait", event.value)
+            return ("wait", _exact(event.value))
         case EventKind.DIGITAL_OUTPUT:
             return ("output", int(event.target), event.value == 1.0)
         case EventKind.CALL:
@@ -180,11 +184,16 @@ def _event_meaning(event: Event, options: PostOptions) -> tuple[object, ...]:
             return ("call", options.spindle_off)
 
 
+def _exact(value: float) -> Fraction:
+    """Return the shortest decimal that denotes `value`, which is what a person asked for."""
+    return Fraction(repr(float(value)))
+
+
 def _meaning(text: str) -> tuple[object, ...]:
     if text.startswith("!"):
         return ("remark",)
     if found := _WAIT.fullmatch(text):
-        return ("wait", float(found[1]))
+        return ("wait", Fraction(found[1]))
     if found := _OUTPUT.fullmatch(text):
         return ("output", int(found[1]), found[2] == "ON")
     if found := _CALL.fullmatch(text):
@@ -215,10 +224,15 @@ def _motion_differences(
         if (speed.value, speed.unit) != (move.percent, "%"):
             yield f"has the speed {speed.text} instead of {move.percent}%"
         return
-    asked = move.duration if move.duration is not None else math.nan
-    posted = math.nan if speed.value is None else speed.value / 1000.0
-    if speed.unit != "msec" or not -TIME_SLACK <= posted - asked <= MOTION_STEP + TIME_SLACK:
-        yield f"has the speed {speed.text} instead of {asked:g} s, rounded up to a millisecond"
+    if move.duration is not None and (
+        speed.value is None
+        or speed.unit != "msec"
+        or not 0 <= _exact(speed.value) * MOTION_STEP - _exact(move.duration) < MOTION_STEP
+    ):
+        yield (
+            f"has the speed {speed.text} instead of {move.duration:g} s, rounded up to a "
+            "millisecond"
+        )
 
 
 def _position_differences(move: Move, position: Position, program: JointProgram) -> Iterator[str]:

@@ -9,7 +9,7 @@ from enum import Enum
 import numpy as np
 
 from solver.errors import ModelError
-from solver.transforms import FloatArray, frozen
+from solver.transforms import FloatArray, IntArray, frozen
 
 
 def _positive(what: str, value: float) -> None:
@@ -81,7 +81,7 @@ class Mesh:
     """A watertight triangle mesh: `vertices` (k, 3) [m] and `faces` (m, 3), outward winding."""
 
     vertices: FloatArray
-    faces: FloatArray
+    faces: IntArray
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", frozen(self.vertices, (-1, 3)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from solver.search.kernels_layers import (
     BEST_ROW,
@@ -139,7 +140,7 @@ def best_first(
     cost: FloatArray,
     heuristic: FloatArray,
     parent: IntArray,
-    closed: IntArray,
+    closed: NDArray[np.uint8],
     order: IntArray,
     keys: FloatArray,
     nodes: IntArray,
@@ -169,7 +170,7 @@ def best_first(
         if goal_low <= node < goal_high:
             state[GOAL] = node
             return
-        gap = np.searchsorted(offsets, node, side="right") - 1
+        gap = int(np.searchsorted(offsets, node, side="right")) - 1
         state[DEEPEST] = max(state[DEEPEST], gap)
         if gap + 1 >= layers:
             continue

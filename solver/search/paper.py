@@ -18,9 +18,10 @@ from solver.search.kernels_astar import (
     HEAP_SIZE,
     UNKNOWN,
     best_first,
+    estimate,
     open_starts,
 )
-from solver.search.kernels_layers import TILE
+from solver.search.kernels_layers import ROWS, TILE
 from solver.search.sweeps import STAGE, kernel_arrays
 from solver.transforms import FloatArray, IntArray
 
@@ -116,6 +117,20 @@ def heuristic_weights(graph: LayeredGraph, weight: float) -> FloatArray:
     return weight * least
 
 
+def heuristic_values(graph: LayeredGraph, weight: float = HEURISTIC_WEIGHT) -> FloatArray:
+    """(K,) heuristic of every node in scheme f1; infinite when the last layer is empty."""
+    scales = heuristic_weights(graph, weight)
+    goals = (graph.joints / graph.ranges)[graph.layer(graph.layer_count - 1)]
+    values = np.full(graph.node_count, UNKNOWN)
+    tile, zeros = np.empty(ROWS * TILE), np.zeros(len(goals))
+    for layer in range(graph.layer_count):
+        nodes, scale = graph.layer(layer), float(scales[layer])
+        for low in range(nodes.start, nodes.stop, TILE):
+            high = min(low + TILE, nodes.stop)
+            estimate(tile, graph.joints, graph.ranges, low, high, goals, zeros, scale, values)
+    return values
+
+
 def _search(
     graph: LayeredGraph, starts: slice, goals: slice, weight: float, monitor: Monitor | None
 ) -> SearchResult:
@@ -143,7 +158,7 @@ class _BestFirst:
         self._cost = np.full(count, np.inf)
         self._heuristic = np.full(count, UNKNOWN)
         self._parent = np.full(count, -1, dtype=np.int64)
-        self._closed = np.zeros(count, dtype=np.int64)
+        self._closed = np.zeros(count, dtype=np.uint8)
         self._order = np.empty(count, dtype=np.int64)
         self._state = np.array([0, 0, -1, 0], dtype=np.int64)
         self._keys = np.empty(1024)

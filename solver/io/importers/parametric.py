@@ -192,14 +192,14 @@ def face_line_toolpath(workpiece: Workpiece, spec: FaceLine) -> Toolpath:
         When the beam has no such face or edge, or the line would leave the face.
     """
     face = face_of(workpiece, spec.face)
-    (start, first), (end, last) = spec.start, spec.end
+    (start, offset), (end, last_offset) = spec.start, spec.end
     _check_along(workpiece, start, end)
     _check_lift(face, spec.lift)
-    ends = [
-        _within(face, offset * face.unit) if spec.relative else _across(face, spec.edge, offset)
-        for offset in (first, last)
-    ]
-    along, across = np.linspace(start, end, spec.points), np.linspace(*ends, spec.points)
+    first, last = (
+        _within(face, one * face.unit) if spec.relative else _across(face, spec.edge, one)
+        for one in (offset, last_offset)
+    )
+    along, across = np.linspace(start, end, spec.points), np.linspace(first, last, spec.points)
     positions, normals = _placed(face, along, across, spec.lift)
     travels = np.gradient(positions, axis=0)
     if not np.linalg.norm(np.diff(positions, axis=0), axis=1).min() >= 1e-6:

@@ -10,6 +10,7 @@ from typing import Final
 from solver.errors import InputError, Place
 from solver.io.importers.csv_path import import_csv
 from solver.io.importers.json_path import import_json
+from solver.io.importers.ls_path import import_ls
 from solver.io.importers.naming import listed, shown
 from solver.io.importers.options import ImportOptions
 from solver.io.importers.resampling import resample
@@ -25,6 +26,7 @@ IMPORTERS: Final[Mapping[str, Importer]] = MappingProxyType(
         ".txt": import_csv,
         ".tsv": import_csv,
         ".json": import_json,
+        ".ls": import_ls,
     }
 )
 """Extension in lower case -> importer."""

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -10,11 +12,11 @@ import numpy as np
 from solver.errors import ModelError
 from solver.io.importers.orientation import rotations_from_quaternions
 from solver.io.importers.parametric import steps_of
-from solver.model.toolpath import Event, Pass, Role, Toolpath
+from solver.model.toolpath import Pass, Toolpath
 from solver.transforms import FloatArray, IntArray
 
 CORNER: Final = 1e-3
-"""A waypoint where the path turns by more than this is kept [rad]."""
+"""A waypoint is kept where the path has turned by more than this since the last kept one [rad]."""
 
 MAX_POINTS: Final = 1_000_000
 """Most waypoints of a resampled toolpath."""
@@ -70,11 +72,11 @@ def _resampled(one: Pass, step: float) -> Pass:
     if len(one) == 1:
         return one
     lengths = _lengths(one)
-    kept = _kept(one)
-    stations = [0.0]
-    for start, end in zip(kept[:-1], kept[1:], strict=True):
+    stations, new_index = [0.0], {0: 0}
+    for start, end in pairwise(_kept(one)):
         count = steps_of(lengths[end] - lengths[start], step)
         stations += list(np.linspace(lengths[start], lengths[end], count + 1)[1:])
+        new_index[end] = len(stations) - 1
     where = np.array(stations)
     segment = np.clip(np.searchsorted(lengths, where, side="left") - 1, 0, len(one) - 2)
     share = (where - lengths[segment]) / (lengths[segment + 1] - lengths[segment])
@@ -83,28 +85,13 @@ def _resampled(one: Pass, step: float) -> Pass:
     poses[:, :3, :3] = slerp(one.poses[:, :3, :3], segment, share)
     before, after = one.positions[segment], one.positions[segment + 1]
     poses[:, :3, 3] = before + share[:, None] * (after - before)
-    roles, events = _carried(one, lengths, kept, where, segment, poses)
-    return Pass(poses, roles, one.feed, events, one.lean, one.lead, one.touches, one.name)
-
-
-def _carried(
-    one: Pass,
-    lengths: FloatArray,
-    kept: list[int],
-    where: FloatArray,
-    segment: IntArray,
-    poses: FloatArray,
-) -> tuple[tuple[Role, ...], dict[int, tuple[Event, ...]]]:
-    """Put the kept waypoints back exactly into `poses`; return all roles and events."""
     roles = [one.roles[given + 1] for given in segment]
-    events = {}
-    for given in kept:
-        index = int(np.searchsorted(where, lengths[given]))
+    for given, index in new_index.items():
+        # Kept waypoints are exactly what they were, not what interpolation rounds them to.
         poses[index] = one.poses[given]
         roles[index] = one.roles[given]
-        if given in one.events:
-            events[index] = one.events[given]
-    return tuple(roles), events
+    events = {new_index[given]: those for given, those in one.events.items()}
+    return replace(one, poses=poses, roles=tuple(roles), events=events)
 
 
 def _lengths(one: Pass) -> FloatArray:
@@ -115,14 +102,22 @@ def _lengths(one: Pass) -> FloatArray:
 
 
 def _kept(one: Pass) -> list[int]:
+    """Return the indices of the waypoints that resampling does not replace, ascending."""
     last = len(one) - 1
     steps = np.diff(one.positions, axis=0)
     before, after = steps[:-1], steps[1:]
     cross = np.linalg.norm(np.cross(before, after), axis=1)
     turns = np.arctan2(cross, (before * after).sum(axis=1))
-    kept = {0, last, *(int(index) + 1 for index in np.flatnonzero(turns > CORNER))}
+    kept = {0, last, *one.events}
     kept |= {index for index in range(last) if one.roles[index] is not one.roles[index + 1]}
-    return sorted(kept | set(one.events))
+    turned = 0.0
+    for index, turn in enumerate(turns, start=1):
+        # Many small turns add up to an arc, which long steps would cut.
+        turned = 0.0 if index in kept else turned + float(turn)
+        if turned > CORNER:
+            kept.add(index)
+            turned = 0.0
+    return sorted(kept)
 
 
 def _quaternion(rotation: FloatArray) -> FloatArray:

@@ -1,0 +1,1 @@
+"""Benchmarks: medians and ratios within one run; nothing here asserts a time."""

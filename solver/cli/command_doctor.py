@@ -1,0 +1,57 @@
+"""`posopt doctor`: versions, resources, and a self-test of distances on the known bad case."""
+
+from __future__ import annotations
+
+import argparse
+import platform
+import sys
+from importlib import metadata
+
+from solver.cli.output import emit_json
+from solver.errors import RefusedError
+
+HELP = "show versions and test this installation"
+PACKAGES = (
+    "posopt", "numpy", "numba", "python-fcl", "trimesh", "PySide6-Essentials", "pyqtgraph",
+    "PyOpenGL",
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of this command."""
+
+
+def run(options: argparse.Namespace) -> int:
+    """Test and print; exit code 4 when a test failed."""
+    from solver.catalog import describe
+    from solver.collision.self_test import distance_self_test
+
+    versions = {"python": platform.python_version(), "platform": platform.platform()}
+    for name in PACKAGES:
+        try:
+            versions[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            versions[name] = "not installed"
+    shipped = {kind: len(describe(kind)) for kind in ("robots", "beams", "tools", "cells")}
+    tests = distance_self_test()
+    failed = [one.name for one in tests if not one.passed]
+    if options.as_json:
+        document = {
+            "format": "posopt-doctor",
+            "version": 1,
+            "versions": versions,
+            "resources": shipped,
+            "tests": [one._asdict() for one in tests],
+            "passed": not failed,
+        }
+        emit_json(document, options.as_json)
+    if options.as_json != "-":
+        for name, version in versions.items():
+            print(f"{name:<20} {version}")
+        print("resources            " + ", ".join(f"{n} {kind}" for kind, n in shipped.items()))
+        for one in tests:
+            print(one)
+        sys.stdout.flush()
+    if failed:
+        raise RefusedError(f"the self-test failed: {', '.join(failed)}")
+    return 0

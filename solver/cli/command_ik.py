@@ -1,0 +1,70 @@
+"""`posopt ik`: every joint vector inside the limits that reaches a pose."""
+
+from __future__ import annotations
+
+import argparse
+
+import numpy as np
+
+from solver.cli.arguments import six_numbers
+from solver.cli.command_fk import pose_from_xyzwpr
+from solver.cli.csv_rows import read_rows
+from solver.cli.output import emit_json
+from solver.units import DEG_PER_RAD
+
+HELP = "inverse kinematics: all joint solutions of poses in fanuc_world"
+NO_SOLUTION = 3
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of this command."""
+    parser.add_argument("robot", metavar="ROBOT", help="name or TOML file of a robot")
+    source = parser.add_mutually_exclusive_group(required=True)
+    source.add_argument("--pose", metavar="X,Y,Z,W,P,R", help="a pose in fanuc_world, mm and deg")
+    source.add_argument("--csv", metavar="F", help="a CSV file with X,Y,Z,W,P,R a row")
+    parser.add_argument("--tool", metavar="X,Y,Z,W,P,R", help="flange to TCP; without, the flange")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Solve and print; exit code 3 when a pose has no solution."""
+    from solver.catalog import load_robot
+    from solver.kinematics.arm import inverse
+
+    robot = load_robot(options.robot)
+    rows = (
+        read_rows(options.csv) if options.csv else np.array([six_numbers(options.pose, "--pose")])
+    )
+    tool = None if options.tool is None else pose_from_xyzwpr(
+        np.array(six_numbers(options.tool, "--tool"))
+    )
+    results = []
+    for row in rows:
+        found = inverse(robot, pose_from_xyzwpr(row), tool)
+        results.append(
+            {
+                "pose": row,
+                "solutions": [
+                    {"branch": int(branch), "config": config, "joints_deg": joints * DEG_PER_RAD}
+                    for joints, branch, config in zip(
+                        found.joints, found.branch, found.config, strict=True
+                    )
+                ],
+            }
+        )
+    if options.as_json:
+        emit_json({"format": "posopt-ik", "version": 1, "robot": robot.name, "results": results},
+                  options.as_json)
+    if options.as_json != "-":
+        _print(results)
+    return 0 if all(one["solutions"] for one in results) else NO_SOLUTION
+
+
+def _print(results: list[dict]) -> None:  # type: ignore[type-arg]
+    for index, one in enumerate(results, start=1):
+        if len(results) > 1:
+            print(f"pose {index}")
+        if not one["solutions"]:
+            print("  no solution inside the reach and the limits")
+        for solution in one["solutions"]:
+            joints = "  ".join(f"{value:9.4f}" for value in solution["joints_deg"])
+            print(f"  branch {solution['branch']}  {joints} deg  {solution['config']}")
