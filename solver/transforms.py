@@ -78,11 +78,15 @@ def wpr_from_rotation(rotation: FloatArray) -> tuple[float, float, float]:
     """
     cosine = math.hypot(rotation[0, 0], rotation[1, 0])
     p = math.atan2(-rotation[2, 0], cosine)
-    if cosine < 1e-12:
-        sign = math.copysign(1.0, -rotation[2, 0])
-        return math.atan2(sign * rotation[0, 1], rotation[1, 1]), p, 0.0
-    w = math.atan2(rotation[2, 1], rotation[2, 2])
-    return w, p, math.atan2(rotation[1, 0], rotation[0, 0])
+    r = 0.0 if cosine < 1e-12 else math.atan2(rotation[1, 0], rotation[0, 0])
+    # W from Rz(R)^T rotation, not from its last row: close to P = +-90 deg the rounding of that
+    # row would not match that of R, and the three angles would miss the rotation.
+    sine_r, cosine_r = math.sin(r), math.cos(r)
+    w = math.atan2(
+        sine_r * rotation[0, 2] - cosine_r * rotation[1, 2],
+        cosine_r * rotation[1, 1] - sine_r * rotation[0, 1],
+    )
+    return w, p, r
 
 
 def rotation_from_quaternion(w: float, x: float, y: float, z: float) -> FloatArray:

@@ -78,6 +78,21 @@ def test_wpr_close_to_gimbal_lock_gives_the_rotation_back(w, gap, side, r):
     np.testing.assert_allclose(again, rotation, atol=1e-11)
 
 
+@given(angle, st.integers(-14, -3), st.sampled_from([-1, 1]), angle)
+def test_wpr_close_to_gimbal_lock_gives_a_rounded_rotation_back(w, exponent, side, r):
+    """W and R were once read independently, and missed such a rotation by up to 2e-4 rad."""
+    exact = rotation_from_wpr(w, side * (math.pi / 2 - 10.0**exponent), r)
+    other = rotation_from_wpr(0.3, 0.5, -0.7)
+    rounded = other.T @ (other @ exact)
+    again = rotation_from_wpr(*wpr_from_rotation(rounded))
+    np.testing.assert_allclose(again, rounded, atol=1e-11)
+
+
+def test_wpr_of_a_flange_that_looks_forward_is_written_without_negative_half_turns():
+    w, p, r = wpr_from_rotation(np.array([[0.0, 0, 1], [0, -1, 0], [1, 0, 0]]))
+    assert (w, p, r) == (math.pi, -math.pi / 2, 0.0)
+
+
 @given(quaternion)
 def test_quaternion_of_any_length_equals_scipys(wxyz):
     assume(length(wxyz) > 1e-3)

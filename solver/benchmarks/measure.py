@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import statistics
 import time
 from collections.abc import Callable
@@ -9,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solver.benchmarks.plain_astar import plain_f2
+from solver.benchmarks.plain_astar import plain_astar
 from solver.candidates.generate import CandidateSet, generate
 from solver.candidates.outcomes import Outcome
 from solver.costs.penalty import safety_penalty
@@ -114,8 +115,9 @@ def time_peer(problem: PlanningProblem, repeats: int) -> PeerTiming:
 def _plain_cost(candidates: CandidateSet) -> float:
     nodes, problem = candidates.nodes, candidates.problem
     penalty = safety_penalty(nodes.clearance, problem.settings.safety_distance)
-    cost, _ = plain_f2(
-        nodes.offsets, nodes.model / problem.robot.cost_ranges, penalty,
-        problem.settings.heuristic_weight,
-    )
-    return cost
+    layers, costs = [], []
+    for first, last in itertools.pairwise(nodes.offsets):
+        layers.append(nodes.model[first:last].tolist())
+        costs.append(penalty[first:last].tolist())
+    ranges = problem.robot.cost_ranges.tolist()
+    return plain_astar(layers, costs, ranges, problem.settings.heuristic_weight).cost

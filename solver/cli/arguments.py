@@ -18,6 +18,8 @@ class ExactParser(argparse.ArgumentParser):
     def __init__(self, *args: object, **kwargs: object) -> None:
         kwargs["allow_abbrev"] = False
         super().__init__(*args, **kwargs)  # type: ignore[arg-type]
+        # Lists such as -45,40,... are values, not options.
+        self._negative_number_matcher = re.compile(r"^-\.?\d")
 
     def error(self, message: str) -> NoReturn:
         """Print one line to stderr and leave with exit code 2."""
@@ -40,3 +42,11 @@ def six_numbers(text: str, what: str) -> tuple[float, ...]:
     if len(parts) != 6:
         raise InputError(f"{what}: expected six numbers separated by commas, got {len(parts)}")
     return tuple(number(part, f"{what}, value {i}") for i, part in enumerate(parts, start=1))
+
+
+def positive_number(text: str, what: str) -> float:
+    """A finite decimal number above zero."""
+    value = number(text, what)
+    if value <= 0.0:
+        raise InputError(f"{what}: expected a number above zero, got {text.strip()}")
+    return value

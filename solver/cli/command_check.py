@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from solver.cli.output import emit_json
+from solver.cli.output import emit_json, refused
 from solver.errors import InputError, RefusedError
 
 HELP = "check a program against its cell, on the nominal model"
@@ -61,7 +61,8 @@ def run(options: argparse.Namespace) -> int:
             print(check)
     if failed:
         names = ", ".join(check.name for check in failed)
-        raise RefusedError(f"{len(failed)} of {len(checks)} checks failed: {names}")
+        message = f"{len(failed)} of {len(checks)} checks failed: {names}"
+        return refused(options.command, RefusedError(message))
     if options.as_json != "-":
         print(f"all {len(checks)} checks passed on the nominal model of cell {problem.name}")
     return 0

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import argparse
 import platform
-import sys
 from importlib import metadata
 
-from solver.cli.output import emit_json
+from solver.cli.output import emit_json, refused
 from solver.errors import RefusedError
 
 HELP = "show versions and test this installation"
@@ -51,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
         print("resources            " + ", ".join(f"{n} {kind}" for kind, n in shipped.items()))
         for one in tests:
             print(one)
-        sys.stdout.flush()
     if failed:
-        raise RefusedError(f"the self-test failed: {', '.join(failed)}")
+        message = f"the self-test failed: {', '.join(failed)}"
+        return refused(options.command, RefusedError(message))
     return 0

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import sys
 import time
 from dataclasses import replace
 from pathlib import Path
 
-from solver.cli.arguments import number
-from solver.cli.output import TerminalMonitor, emit_json
+from solver.cli.arguments import positive_number
+from solver.cli.output import TerminalMonitor, emit_json, refused
+from solver.errors import RefusedError
 from solver.model.settings import Scheme
 from solver.units import MM
 
@@ -45,7 +45,7 @@ def run(options: argparse.Namespace) -> int:
 
     accepted = None
     if options.accept_clearance is not None:
-        accepted = number(options.accept_clearance, "--accept-clearance") * MM
+        accepted = positive_number(options.accept_clearance, "--accept-clearance") * MM
     problem = load_cell(options.cell, beam=options.beam, path=options.path)
     if options.scheme:
         scheme = Scheme(options.scheme)
@@ -68,14 +68,13 @@ def run(options: argparse.Namespace) -> int:
     if not options.no_program:
         try:
             written = write_program(result, target, accepted)
-        except Exception as error:
+        except RefusedError as error:
             refusal = error
     if options.as_json:
         emit_json(result_document(result, written, refusal), options.as_json)
     if refusal is not None:
-        raise refusal
+        return refused(options.command, refusal)
     if written is not None and options.as_json != "-":
         print(f"wrote {written.path}: {len(written.checks)} checks passed after reading it back "
               "(nominal model; verify in T1)")
-        sys.stdout.flush()
     return 0

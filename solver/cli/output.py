@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from solver.errors import PosoptError
 from solver.io.atomic import write_atomically
 
 _BAR = 28
@@ -73,3 +74,9 @@ def emit_json(document: Mapping[str, Any], target: str) -> None:
     else:
         write_atomically(Path(target), text.encode())
 
+
+
+def refused(command: str, error: PosoptError) -> int:
+    """Say why a command that has already reported its result fails; returns its exit code."""
+    print(f"posopt {command}: {error}", file=sys.stderr)
+    return error.exit_code

@@ -156,7 +156,7 @@ def _ordered_distance(
     r, t = _relative(rotation_a, position_a, rotation_b, position_b)
     radius_a, radius_b = core_radius(a), core_radius(b)
     gap, n, pa, pb = _core_distance(
-        a, vertices_a, r, t, b, vertices_b, cutoff + radius_a + radius_b, wants_depth
+        a, vertices_a, r, t, b, vertices_b, max(cutoff + radius_a + radius_b, 0.0), wants_depth
     )
     _into_world(rotation_b, position_b, pa, -radius_a, n, witness, row_a)
     _into_world(rotation_b, position_b, pb, radius_b, n, witness, 1 - row_a)

@@ -6,6 +6,9 @@ belongs to the simplex; a weight of exactly zero drops the corner.
 
 from numba import njit
 
+FLAT = 1e-20
+"""Squared sine below which a corner counts as lying in the plane of the others."""
+
 
 @njit(cache=True, nogil=True)
 def edge_weight(a, b):
@@ -75,13 +78,15 @@ def triangle_weights(a, b, c):
 
 @njit(cache=True, nogil=True)
 def _is_outside(a, b, c, d):
-    """Whether the origin is not strictly on d's side of the plane abc."""
+    """Whether the origin is beyond the plane abc as seen from d, or d is next to that plane."""
     ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+    wx, wy, wz = d[0] - a[0], d[1] - a[1], d[2] - a[2]
     nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
     origin = -(nx * a[0] + ny * a[1] + nz * a[2])
-    corner = nx * (d[0] - a[0]) + ny * (d[1] - a[1]) + nz * (d[2] - a[2])
-    return origin * corner <= 0.0
+    corner = nx * wx + ny * wy + nz * wz
+    scale = (nx * nx + ny * ny + nz * nz) * (wx * wx + wy * wy + wz * wz)
+    return origin * corner <= 0.0 or corner * corner <= FLAT * scale
 
 
 @njit(cache=True, nogil=True)

@@ -12,22 +12,33 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from solver.collision.mesh_proxy import ConvexProxy, bvh_model
-from solver.collision.mesh_topology import TriangleField, closed_mesh, is_inside, triangle_field
+from solver.collision.mesh_topology import (
+    Bodies,
+    TriangleField,
+    closed_mesh,
+    is_inside,
+    triangle_field,
+)
 from solver.errors import ModelError
 from solver.model.shapes import Mesh
-from solver.transforms import FloatArray, frozen, inverse
+from solver.transforms import FloatArray, frozen
+
+CLEAR: Final = 1e-9
+"""Way [m] beyond the depth at which two bodies count as parted."""
 
 
 class MeshClearance(NamedTuple):
     """Signed `distance` [m] and the nearest points (3,), in the frame of the poses.
 
-    Never over-stated; under-stated by at most the proxy's excess while positive. Zero or
-    negative means overlap; then the depth and the points are estimates.
+    Never over-stated; while positive, under-stated by at most the proxy's excess. Zero or
+    negative means overlap; its size is then an estimate of the depth: for a sphere or capsule
+    whose centre line is outside, how far the mesh reaches into it; else the length of some
+    translation that parts the two.
     """
 
     distance: float
@@ -39,8 +50,9 @@ class MeshClearance(NamedTuple):
 class MeshObstacle:
     """A solid mesh at a `pose` (4, 4) parent_from_mesh, with its search structures.
 
-    `low`, `high` (3,) bound it, `samples` (n, 3) holds one vertex of every separate body, and
-    `surface` its triangles, all in the mesh frame [m]. `model` is fcl's.
+    `low`, `high` (3,) bound it, `samples` (n, 3) holds one vertex of every separate body,
+    `least_span` is the diagonal of the smallest body's box, and `surface` its triangles, all in
+    the mesh frame [m]. `model` is fcl's.
 
     Raises
     ------
@@ -53,6 +65,7 @@ class MeshObstacle:
     low: FloatArray = field(init=False, repr=False)
     high: FloatArray = field(init=False, repr=False)
     samples: FloatArray = field(init=False, repr=False)
+    least_span: float = field(init=False, repr=False)
     surface: TriangleField = field(init=False, repr=False)
     model: Any = field(init=False, repr=False)
 
@@ -65,7 +78,9 @@ class MeshObstacle:
         settle(self, "low", frozen(solid.vertices.min(axis=0)))
         settle(self, "high", frozen(solid.vertices.max(axis=0)))
         settle(self, "samples", frozen(solid.vertices[solid.faces[first_face, 0]]))
-        settle(self, "surface", triangle_field(solid.vertices[solid.faces]))
+        surface = triangle_field(solid.vertices[solid.faces])
+        settle(self, "surface", surface)
+        settle(self, "least_span", _least_span(surface, bodies))
         settle(self, "model", bvh_model(solid.vertices, solid.faces))
 
     def contains(self, point: FloatArray) -> bool:
@@ -95,27 +110,46 @@ def mesh_clearance(
         With both points in the same frame.
     """
     gap, on_core, on_mesh = _surface_gap(proxy.model, proxy_pose, obstacle)
-    body_from_mesh = inverse(proxy_pose) @ obstacle.pose
-    centre_in_mesh = _moved(inverse(body_from_mesh), proxy.centre)
-    inside = obstacle.contains(centre_in_mesh)
-    if gap > 0.0 and not inside and not proxy.contains(_moved(body_from_mesh, obstacle.samples)):
+    if gap > 0.0 and not _nested(proxy, proxy_pose, obstacle):
         toward = (on_mesh - on_core) / gap
         return MeshClearance(gap - proxy.radius, on_core + proxy.radius * toward, on_mesh)
-    return _overlap(proxy, proxy_pose, obstacle, inside)
+    return _overlap(proxy, proxy_pose, obstacle)
 
 
-def _overlap(
-    proxy: ConvexProxy, pose: FloatArray, obstacle: MeshObstacle, inside: bool
-) -> MeshClearance:
-    """Estimate the depth from the body's centre: how far its inner ball has passed the surface."""
-    reach, _, on_mesh = _surface_gap(proxy.centre_model, pose, obstacle)
-    depth = max(proxy.tolerance, proxy.radius, proxy.inner + (reach if inside else -reach))
+def _nested(proxy: ConvexProxy, pose: FloatArray, obstacle: MeshObstacle) -> bool:
+    """Whether one lies inside the other, given that their surfaces do not meet."""
     centre = _moved(pose, proxy.centre)
-    toward = on_mesh - centre
-    length = float(np.linalg.norm(toward))
-    if length > 0.0:
-        toward = toward / (-length if inside else length)
-    return MeshClearance(-depth, centre + proxy.inner * toward, on_mesh)
+    if obstacle.contains(_moved_back(obstacle.pose, centre)):
+        return True
+    if proxy.span < obstacle.least_span:
+        return False
+    return proxy.contains(_moved_back(pose, _moved(obstacle.pose, obstacle.samples)))
+
+
+def _overlap(proxy: ConvexProxy, pose: FloatArray, obstacle: MeshObstacle) -> MeshClearance:
+    """Depth as the length of a translation that parts the two, so never under-estimated.
+
+    The way out is square to the surface where it is nearest to the body's centre; where that
+    does not free the body (a groove, a corner) it is the shortest way out of the mesh's box.
+    """
+    centre = _moved(pose, proxy.centre)
+    _, _, on_mesh = _surface_gap(proxy.centre_model, pose, obstacle)
+    inside = obstacle.contains(_moved_back(obstacle.pose, centre))
+    outward = (on_mesh - centre) if inside else (centre - on_mesh)
+    length = float(np.linalg.norm(outward))
+    outward = outward / length if length > 0.0 else obstacle.pose[:3, 2]
+    corners = _moved(pose, proxy.vertices)
+    depths = (on_mesh - corners) @ outward + proxy.radius
+    deepest = int(np.argmax(depths))
+    depth = max(0.0, float(depths[deepest]))
+    freed = pose.copy()
+    freed[:3, 3] += (depth + CLEAR) * outward
+    gap, _, _ = _surface_gap(proxy.model, freed, obstacle)
+    if gap < proxy.radius or gap <= 0.0 or _nested(proxy, freed, obstacle):
+        middle, reach = _boxes(proxy, pose, obstacle)
+        exits = np.concatenate([obstacle.high - middle + reach, middle + reach - obstacle.low])
+        depth = max(depth, float(exits.min()))
+    return MeshClearance(-depth, corners[deepest] - proxy.radius * outward, on_mesh)
 
 
 def lower_bounds(proxy: ConvexProxy, poses: FloatArray, obstacle: MeshObstacle) -> FloatArray:
@@ -125,28 +159,36 @@ def lower_bounds(proxy: ConvexProxy, poses: FloatArray, obstacle: MeshObstacle) 
     ----------
     proxy : ConvexProxy
         The body.
-    poses : (k, 4, 4) array
+    poses : (..., 4, 4) array
         Its poses in the frame of the obstacle's pose [m].
     obstacle : MeshObstacle
         The mesh.
 
     Returns
     -------
-    (k,) array
+    (...) array
         Distances of the boxes [m]; minus infinity where they meet, since nothing is known.
     """
-    relative = inverse(obstacle.pose) @ poses
-    half = 0.5 * (proxy.high - proxy.low)
-    centre = relative[:, :3, :3] @ (0.5 * (proxy.high + proxy.low)) + relative[:, :3, 3]
-    reach = np.abs(relative[:, :3, :3]) @ half
-    apart = np.maximum(obstacle.low - (centre + reach), (centre - reach) - obstacle.high)
-    bounds = np.linalg.norm(np.maximum(apart, 0.0), axis=1)
+    centre, reach = _boxes(proxy, poses, obstacle)
+    apart = np.abs(centre - 0.5 * (obstacle.low + obstacle.high))
+    apart = apart - reach - 0.5 * (obstacle.high - obstacle.low)
+    bounds = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(axis=-1))
     return np.where(bounds > 0.0, bounds, -math.inf)
+
+
+def _boxes(
+    proxy: ConvexProxy, poses: FloatArray, obstacle: MeshObstacle
+) -> tuple[FloatArray, FloatArray]:
+    """Centres and half extents (..., 3) [m] of the body's boxes along the mesh's axes."""
+    turn = obstacle.pose[:3, :3].T @ poses[..., :3, :3]
+    shift = (poses[..., :3, 3] - obstacle.pose[:3, 3]) @ obstacle.pose[:3, :3]
+    centre = turn @ (0.5 * (proxy.high + proxy.low)) + shift
+    return centre, np.abs(turn) @ (0.5 * (proxy.high - proxy.low))
 
 
 def lower_bound(proxy: ConvexProxy, proxy_pose: FloatArray, obstacle: MeshObstacle) -> float:
     """Certified lower bound [m] of :func:`mesh_clearance`, of one pose, from boxes alone."""
-    return float(lower_bounds(proxy, proxy_pose[None], obstacle)[0])
+    return float(lower_bounds(proxy, proxy_pose, obstacle))
 
 
 def clearances(
@@ -182,8 +224,21 @@ def _surface_gap(
     return gap, on_body, on_mesh
 
 
+def _least_span(surface: TriangleField, bodies: Bodies) -> float:
+    """Diagonal [m] of the smallest box around one of the separate bodies."""
+    low = np.full((len(bodies.volume), 3), math.inf)
+    high = -low
+    np.minimum.at(low, bodies.label, surface.low)
+    np.maximum.at(high, bodies.label, surface.high)
+    return float(np.linalg.norm(high - low, axis=1).min())
+
+
 def _moved(target_from_source: FloatArray, points: FloatArray) -> FloatArray:
     return points @ target_from_source[:3, :3].T + target_from_source[:3, 3]
+
+
+def _moved_back(target_from_source: FloatArray, points: FloatArray) -> FloatArray:
+    return (points - target_from_source[:3, 3]) @ target_from_source[:3, :3]
 
 
 def _checked_pose(pose: FloatArray) -> FloatArray:

@@ -43,8 +43,8 @@ class ConvexProxy:
     The union of balls of `radius` [m] about the polyhedron contains the shape and exceeds it
     by at most `excess` <= `tolerance` [m]. `vertices` (k, 3), `faces` (m, 3), the planes
     `normals` (m, 3) and `offsets` (m,), and `centre` (3,) belong to the polyhedron in the body
-    frame; `low` and `high` (3,) bound polyhedron and radius; `inner` is the radius of a ball
-    about the centre inside the shape. `model` and `centre_model` are fcl's.
+    frame, `span` is the diagonal of its box; `low` and `high` (3,) bound polyhedron and radius.
+    `model` is fcl's model of the polyhedron, `centre_model` that of the centre.
     """
 
     shape: ConvexShape
@@ -56,9 +56,9 @@ class ConvexProxy:
     centre: FloatArray = field(init=False, repr=False)
     low: FloatArray = field(init=False, repr=False)
     high: FloatArray = field(init=False, repr=False)
+    span: float = field(init=False, repr=False)
     radius: float = field(init=False)
     excess: float = field(init=False)
-    inner: float = field(init=False)
     model: Any = field(init=False, repr=False)
     centre_model: Any = field(init=False, repr=False)
 
@@ -87,10 +87,9 @@ class ConvexProxy:
         settle(self, "centre", frozen(centre))
         settle(self, "low", frozen(vertices.min(axis=0) - radius))
         settle(self, "high", frozen(vertices.max(axis=0) + radius))
+        settle(self, "span", float(np.linalg.norm(np.ptp(vertices, axis=0))))
         settle(self, "radius", radius)
         settle(self, "excess", excess)
-        depth = float((offsets - normals @ centre).min())
-        settle(self, "inner", max(0.0, depth + radius - excess))
         settle(self, "model", bvh_model(vertices, faces))
         point, point_faces = _tetrahedron()
         settle(self, "centre_model", bvh_model(point + centre, point_faces))

@@ -51,8 +51,6 @@ def staged(path: Path, data: bytes) -> Iterator[Path]:
 def _checked_target(path: Path) -> Path:
     """Return `path` as absolute, so that a change of folder meanwhile cannot move the file."""
     try:
-        if "\0" in str(path):
-            raise ValueError("a file name holds no null character")
         target = Path(path).absolute()
         if target.is_dir():
             raise InputError("is a folder, a file name was expected", Place(str(path)))

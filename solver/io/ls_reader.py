@@ -38,7 +38,7 @@ _CONTINUED: Final = re.compile(r"[ \t]*:")
 _TWO_ENDS: Final = re.compile(r";[ \t]*;$")
 _BEGINNING: Final = re.compile(r"[A-Za-z$!(@_\-]|//|$")
 _SELECTION: Final = re.compile(
-    r"(UFRAME_NUM|UTOOL_NUM)[ \t]*+(?:\[[^\]]*\][ \t]*+)?=[ \t]*+(?:([0-9]{1,3})$|.*)"
+    r"(UFRAME_NUM|UTOOL_NUM)[ \t]*+(?:\[[ \t]*GP1[^\]]*\][ \t]*+)?=[ \t]*+(?:([0-9]{1,3})$|.*)"
 )
 
 

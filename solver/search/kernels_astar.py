@@ -78,8 +78,7 @@ def pop(keys: FloatArray, nodes: IntArray, size: int) -> int:
 @njit(cache=True, nogil=True)
 def estimate(
     tile: FloatArray,
-    joints: FloatArray,
-    ranges: FloatArray,
+    points: FloatArray,
     low: int,
     high: int,
     goals: FloatArray,
@@ -87,20 +86,22 @@ def estimate(
     weight: float,
     heuristic: FloatArray,
 ) -> None:
-    """Heuristic of the nodes low..high-1: weight times the least L2 distance to any goal."""
+    """Heuristic of the nodes low..high-1: weight times the least L2 distance to any goal.
+
+    At most one tile of nodes; `points` are the joints divided by their ranges.
+    """
     if weight == 0.0:
         heuristic[low:high] = 0.0
         return
-    padded = fill_tile(tile, joints, ranges, joints[:0], ranges[:0], low, high)
-    relax(tile, padded, goals, zeros, weight, EUCLIDEAN)
+    padded = fill_tile(tile, points, low, high, 6)
+    relax(tile, padded, goals, zeros, 0, len(goals), weight, EUCLIDEAN)
     for node in range(low, high):
         heuristic[node] = tile[BEST_ROW * TILE + node - low]
 
 
 @njit(cache=True, nogil=True)
 def open_starts(
-    joints: FloatArray,
-    ranges: FloatArray,
+    points: FloatArray,
     node_cost: FloatArray,
     goals: FloatArray,
     weight: float,
@@ -114,7 +115,7 @@ def open_starts(
 ) -> None:
     """Push the start nodes low..high-1 (at most one tile), each with its node cost."""
     tile = np.zeros(ROWS * TILE)
-    estimate(tile, joints, ranges, low, high, goals, np.zeros(len(goals)), weight, heuristic)
+    estimate(tile, points, low, high, goals, np.zeros(len(goals)), weight, heuristic)
     for node in range(low, high):
         cost[node] = node_cost[node]
         push(keys, nodes, state[HEAP_SIZE], cost[node] + heuristic[node], node)
@@ -204,7 +205,7 @@ def best_first(
                 low = start + (target - start) // TILE * TILE
                 high = min(low + TILE, stop)
                 scale = heuristic_weight[gap + 1]
-                estimate(tile, joints, ranges, low, high, goals, zeros, scale, heuristic)
+                estimate(tile, points, low, high, goals, zeros, scale, heuristic)
                 work -= (high - low) * len(goals)
             push(keys, nodes, state[HEAP_SIZE], reached + heuristic[target], target)
             state[HEAP_SIZE] += 1

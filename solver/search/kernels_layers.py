@@ -1,8 +1,13 @@
-"""Compiled loops over the edges between neighbouring layers.
+"""Compiled dynamic programming over the edges between neighbouring layers.
 
-Targets are held in a tile, structure of arrays with constant row length, and each source sweeps
-the whole tile: the inner loop has no reduction, so that it vectorises without relaxing the rules
-of floating-point arithmetic, and every edge costs the same to the bit on every machine.
+Two things make it fast, and neither changes a bit of the result:
+
+- Targets are held in a tile, structure of arrays with constant row length, and each source
+  passes over the whole tile: the inner loop has no reduction, so that it vectorises under the
+  strict rules of floating-point arithmetic.
+- The nodes of a layer are grouped into clusters with bounding boxes. Rounding is monotone, so
+  the cost from box to box, computed by the same operations in the same order, is never above
+  the computed cost of any edge between the two; a cluster that cannot improve a tile is skipped.
 """
 
 from __future__ import annotations
@@ -12,8 +17,9 @@ from numba import njit
 
 from solver.transforms import FloatArray, IntArray
 
-TILE = 256
-STEP_ROW = 6
+TILE = 32
+FEWEST = 8
+KEYS = 64
 LEAN_ROW = 12
 BEST_ROW = 13
 ROWS = 14
@@ -26,29 +32,92 @@ EUCLIDEAN = 2
 
 
 @njit(cache=True, nogil=True)
-def fill_tile(
-    tile: FloatArray,
+def group(
+    joints: FloatArray,
+    middle: FloatArray,
+    start: int,
+    stop: int,
+    order: IntArray,
+    first: IntArray,
+) -> int:
+    """Sort nodes start..stop-1 by which joints exceed `middle`, and cut them into clusters.
+
+    Writes the nodes to `order` and where each cluster begins to `first`; returns the number of
+    clusters. A cluster holds at most a tile; small ones are joined.
+    """
+    counts = np.zeros(KEYS + 1, dtype=np.int64)
+    count = stop - start
+    keys = np.empty(count, dtype=np.int64)
+    for i in range(count):
+        key = 0
+        for joint in range(6):
+            key = 2 * key + (1 if joints[start + i, joint] > middle[joint] else 0)
+        keys[i] = key
+        counts[key + 1] += 1
+    for key in range(KEYS):
+        counts[key + 1] += counts[key]
+    clusters = 0
+    begin = 0
+    for key in range(KEYS):
+        end = counts[key + 1]
+        if end - begin < FEWEST and end < count:
+            continue
+        pieces = (end - begin + TILE - 1) // TILE
+        for piece in range(pieces):
+            first[clusters] = begin + (end - begin) * piece // pieces
+            clusters += 1
+        begin = end
+    first[clusters] = count
+    for i in range(count):
+        order[counts[keys[i]]] = start + i
+        counts[keys[i]] += 1
+    return clusters
+
+
+@njit(cache=True, nogil=True)
+def gather(
     joints: FloatArray,
     ranges: FloatArray,
     steps: FloatArray,
     lean: FloatArray,
-    low: int,
-    high: int,
-) -> int:
-    """Put the nodes low..high-1 into the tile, best infinite; returns the padded length."""
-    count = high - low
+    order: IntArray,
+    first: IntArray,
+    clusters: int,
+    rows: FloatArray,
+    low: FloatArray,
+    high: FloatArray,
+) -> None:
+    """Copy the ordered nodes into `rows` (normalised joints, steps, lean) and box each cluster."""
+    width = 6
+    if len(steps) > 0 or len(lean) > 0:
+        width = 13
+    for cluster in range(clusters):
+        for row in range(width):
+            low[cluster, row] = INFINITE
+            high[cluster, row] = -INFINITE
+        for i in range(first[cluster], first[cluster + 1]):
+            node = order[i]
+            for joint in range(6):
+                rows[i, joint] = joints[node, joint] / ranges[joint]
+            if len(steps) > 0:
+                for joint in range(6):
+                    rows[i, 6 + joint] = steps[node, joint]
+            if len(lean) > 0:
+                rows[i, LEAN_ROW] = lean[node]
+            for row in range(width):
+                low[cluster, row] = min(low[cluster, row], rows[i, row])
+                high[cluster, row] = max(high[cluster, row], rows[i, row])
+
+
+@njit(cache=True, nogil=True)
+def fill_tile(tile: FloatArray, rows: FloatArray, begin: int, end: int, width: int) -> int:
+    """Put rows begin..end-1 into the tile, best infinite; returns the length padded to eight."""
+    count = end - begin
     padded = (count + 7) // 8 * 8
     for j in range(count):
-        for joint in range(6):
-            tile[joint * TILE + j] = joints[low + j, joint] / ranges[joint]
-    if len(steps) > 0:
-        for j in range(count):
-            for joint in range(6):
-                tile[(STEP_ROW + joint) * TILE + j] = steps[low + j, joint]
-    if len(lean) > 0:
-        for j in range(count):
-            tile[LEAN_ROW * TILE + j] = lean[low + j]
-    for row in range(BEST_ROW):
+        for row in range(width):
+            tile[row * TILE + j] = rows[begin + j, row]
+    for row in range(width):
         for j in range(count, padded):
             tile[row * TILE + j] = 0.0
     for j in range(padded):
@@ -58,19 +127,26 @@ def fill_tile(
 
 @njit(cache=True, nogil=True)
 def relax(
-    tile: FloatArray, count: int, points: FloatArray, values: FloatArray, weight: float, metric: int
+    tile: FloatArray,
+    count: int,
+    rows: FloatArray,
+    values: FloatArray,
+    begin: int,
+    end: int,
+    weight: float,
+    metric: int,
 ) -> None:
-    """Lower the tile's best to the least value + weight * distance over all sources."""
-    for i in range(len(values)):
+    """Lower the tile's best to the least value + weight * distance over sources begin..end-1."""
+    for i in range(begin, end):
         value = values[i]
         if value == INFINITE:
             continue
-        a0 = points[i, 0]
-        a1 = points[i, 1]
-        a2 = points[i, 2]
-        a3 = points[i, 3]
-        a4 = points[i, 4]
-        a5 = points[i, 5]
+        a0 = rows[i, 0]
+        a1 = rows[i, 1]
+        a2 = rows[i, 2]
+        a3 = rows[i, 3]
+        a4 = rows[i, 4]
+        a5 = rows[i, 5]
         for j in range(count):
             d0 = tile[j] - a0
             d1 = tile[TILE + j] - a1
@@ -93,12 +169,12 @@ def relax(
 def relax_bounded(
     tile: FloatArray,
     count: int,
-    points: FloatArray,
+    rows: FloatArray,
     values: FloatArray,
+    begin: int,
+    end: int,
     weight: float,
     metric: int,
-    steps: FloatArray,
-    lean: FloatArray,
     limits: FloatArray,
 ) -> None:
     """As `relax`, over the edges whose steps stay within `limits` (six joints and the lean)."""
@@ -109,23 +185,23 @@ def relax_bounded(
     l4 = limits[4]
     l5 = limits[5]
     l6 = limits[6]
-    for i in range(len(values)):
+    for i in range(begin, end):
         value = values[i]
         if value == INFINITE:
             continue
-        a0 = points[i, 0]
-        a1 = points[i, 1]
-        a2 = points[i, 2]
-        a3 = points[i, 3]
-        a4 = points[i, 4]
-        a5 = points[i, 5]
-        b0 = steps[i, 0]
-        b1 = steps[i, 1]
-        b2 = steps[i, 2]
-        b3 = steps[i, 3]
-        b4 = steps[i, 4]
-        b5 = steps[i, 5]
-        b6 = lean[i]
+        a0 = rows[i, 0]
+        a1 = rows[i, 1]
+        a2 = rows[i, 2]
+        a3 = rows[i, 3]
+        a4 = rows[i, 4]
+        a5 = rows[i, 5]
+        b0 = rows[i, 6]
+        b1 = rows[i, 7]
+        b2 = rows[i, 8]
+        b3 = rows[i, 9]
+        b4 = rows[i, 10]
+        b5 = rows[i, 11]
+        b6 = rows[i, 12]
         for j in range(count):
             d0 = tile[j] - a0
             d1 = tile[TILE + j] - a1
@@ -164,6 +240,114 @@ def gap_limits(gap: int, step_limits: FloatArray, lean_limits: FloatArray) -> Fl
 
 
 @njit(cache=True, nogil=True)
+def box_cost(
+    value: float,
+    weight: float,
+    metric: int,
+    low: FloatArray,
+    high: FloatArray,
+    source: int,
+    other_low: FloatArray,
+    other_high: FloatArray,
+    target: int,
+) -> float:
+    """Lower bound of value + weight * distance between two boxes."""
+    d = 0.0
+    for joint in range(6):
+        apart = max(
+            0.0,
+            low[source, joint] - other_high[target, joint],
+            other_low[target, joint] - high[source, joint],
+        )
+        d += apart if metric == ABSOLUTE else apart * apart
+    if metric == EUCLIDEAN:
+        d = np.sqrt(d)
+    return value + weight * d
+
+
+@njit(cache=True, nogil=True)
+def boxes_allow(
+    limits: FloatArray,
+    low: FloatArray,
+    high: FloatArray,
+    source: int,
+    other_low: FloatArray,
+    other_high: FloatArray,
+    target: int,
+) -> bool:
+    """Whether some step between two boxes may stay within the limits."""
+    for bound in range(7):
+        if limits[bound] == INFINITE:
+            continue
+        row = 6 + bound
+        if low[source, row] - other_high[target, row] > limits[bound]:
+            return False
+        if other_low[target, row] - high[source, row] > limits[bound]:
+            return False
+    return True
+
+
+@njit(cache=True, nogil=True)
+def relax_clusters(
+    tile: FloatArray,
+    rows: FloatArray,
+    values: FloatArray,
+    first: IntArray,
+    low: FloatArray,
+    high: FloatArray,
+    least: FloatArray,
+    clusters: int,
+    other_rows: FloatArray,
+    other_first: IntArray,
+    other_low: FloatArray,
+    other_high: FloatArray,
+    target: int,
+    weight: float,
+    metric: int,
+    bounded: bool,
+    limits: FloatArray,
+    bounds: FloatArray,
+) -> None:
+    """Fill the tile with a target cluster and relax it from all source clusters that matter."""
+    begin = other_first[target]
+    count = other_first[target + 1] - begin
+    padded = fill_tile(tile, other_rows, begin, begin + count, 13 if bounded else 6)
+    nearest = 0
+    for source in range(clusters):
+        bounds[source] = box_cost(
+            least[source], weight, metric, low, high, source, other_low, other_high, target
+        )
+        if bounded and not boxes_allow(limits, low, high, source, other_low, other_high, target):
+            bounds[source] = INFINITE
+        if bounds[source] < bounds[nearest]:
+            nearest = source
+    worst = INFINITE
+    for turn in range(clusters + 1):
+        source = nearest if turn == 0 else turn - 1
+        if bounds[source] >= worst or (turn > 0 and source == nearest):
+            continue
+        if bounded:
+            relax_bounded(
+                tile,
+                padded,
+                rows,
+                values,
+                first[source],
+                first[source + 1],
+                weight,
+                metric,
+                limits,
+            )
+        else:
+            relax(
+                tile, padded, rows, values, first[source], first[source + 1], weight, metric
+            )
+        worst = -INFINITE
+        for j in range(count):
+            worst = max(worst, tile[BEST_ROW * TILE + j])
+
+
+@njit(cache=True, nogil=True)
 def sweep(
     offsets: IntArray,
     joints: FloatArray,
@@ -174,76 +358,146 @@ def sweep(
     step_limits: FloatArray,
     lean: FloatArray,
     lean_limits: FloatArray,
+    middle: FloatArray,
     metric: int,
     forward: bool,
     widest: bool,
     gap_first: int,
     gap_count: int,
-    low: int,
-    high: int,
+    piece_low: int,
+    piece_high: int,
     values: FloatArray,
 ) -> None:
     """Carry `values` over gaps gap_first, gap_first +- 1, ...; a single gap may be cut in pieces.
 
     Forward: value of a target = least value + edge, plus its node cost; backward: least
     (node cost + value) + edge. `widest` takes the larger of node cost and value instead of
-    the sum. low..high-1 are the targets to do, counted within their layer.
+    the sum. piece_low..piece_high-1 are the targets to do, counted within their layer.
     """
     size = 0
     for index in range(gap_count):
         gap = gap_first + index if forward else gap_first - index
         size = max(size, offsets[gap + 1] - offsets[gap], offsets[gap + 2] - offsets[gap + 1])
+    most = size // FEWEST + size // TILE + 2
     tile = np.zeros(ROWS * TILE)
-    points = np.empty((size, 6))
+    bounds = np.empty(most)
+    least = np.empty(most)
     source_values = np.empty(size)
-    source_steps = np.zeros((size, 6))
-    source_lean = np.zeros(size)
+    order = np.empty((2, size), dtype=np.int64)
+    first = np.zeros((2, most + 1), dtype=np.int64)
+    rows = np.zeros((2, size, 13))
+    low = np.zeros((2, most, 13))
+    high = np.zeros((2, most, 13))
+    clusters = 0
+    side = 0
     for index in range(gap_count):
         gap = gap_first + index if forward else gap_first - index
         source_layer = gap if forward else gap + 1
         target_layer = gap + 1 if forward else gap
-        source_start = offsets[source_layer]
-        target_start = offsets[target_layer]
-        count = offsets[source_layer + 1] - source_start
         limits = gap_limits(gap, step_limits, lean_limits)
         bounded = False
         for bound in range(7):
             bounded = bounded or limits[bound] < INFINITE
-        for i in range(count):
-            node = source_start + i
-            for joint in range(6):
-                points[i, joint] = joints[node, joint] / ranges[joint]
-            source_values[i] = values[node] if forward else values[node] + node_cost[node]
-            if bounded and len(steps) > 0:
-                for joint in range(6):
-                    source_steps[i, joint] = steps[node, joint]
-            if bounded and len(lean) > 0:
-                source_lean[i] = lean[node]
-        stop = min(target_start + high, offsets[target_layer + 1])
-        for first in range(target_start + low, stop, TILE):
-            last = min(first + TILE, stop)
-            if bounded:
-                padded = fill_tile(tile, joints, ranges, steps, lean, first, last)
-                relax_bounded(
-                    tile,
-                    padded,
-                    points[:count],
-                    source_values[:count],
-                    gap_weight[gap],
-                    metric,
-                    source_steps[:count],
-                    source_lean[:count],
-                    limits,
-                )
-            else:
-                padded = fill_tile(tile, joints, ranges, steps[:0], lean[:0], first, last)
-                relax(tile, padded, points[:count], source_values[:count], gap_weight[gap], metric)
-            for node in range(first, last):
-                best = tile[BEST_ROW * TILE + node - first]
+        if index == 0:
+            clusters = group(
+                joints,
+                middle,
+                offsets[source_layer],
+                offsets[source_layer + 1],
+                order[side],
+                first[side],
+            )
+            gather(
+                joints,
+                ranges,
+                steps,
+                lean,
+                order[side],
+                first[side],
+                clusters,
+                rows[side],
+                low[side],
+                high[side],
+            )
+        other = 1 - side
+        begin = offsets[target_layer] + piece_low
+        end = min(offsets[target_layer] + piece_high, offsets[target_layer + 1])
+        targets = group(joints, middle, begin, end, order[other], first[other])
+        gather(
+            joints,
+            ranges,
+            steps,
+            lean,
+            order[other],
+            first[other],
+            targets,
+            rows[other],
+            low[other],
+            high[other],
+        )
+        for cluster in range(clusters):
+            least[cluster] = INFINITE
+            for i in range(first[side, cluster], first[side, cluster + 1]):
+                node = order[side, i]
+                value = values[node] if forward else values[node] + node_cost[node]
+                source_values[i] = value
+                least[cluster] = min(least[cluster], value)
+        for target in range(targets):
+            relax_clusters(
+                tile,
+                rows[side],
+                source_values,
+                first[side],
+                low[side],
+                high[side],
+                least,
+                clusters,
+                rows[other],
+                first[other],
+                low[other],
+                high[other],
+                target,
+                gap_weight[gap],
+                metric,
+                bounded,
+                limits,
+                bounds,
+            )
+            for i in range(first[other, target], first[other, target + 1]):
+                node = order[other, i]
+                best = tile[BEST_ROW * TILE + i - first[other, target]] if clusters else INFINITE
                 if widest:
                     values[node] = max(best, node_cost[node])
                 else:
                     values[node] = best + node_cost[node] if forward else best
+        clusters = targets
+        side = other
+
+
+@njit(cache=True, nogil=True)
+def edge_cost(
+    joints: FloatArray,
+    ranges: FloatArray,
+    weight: float,
+    metric: int,
+    steps: FloatArray,
+    lean: FloatArray,
+    limits: FloatArray,
+    source: int,
+    target: int,
+) -> float:
+    """Cost of one edge by the operations of `relax`, infinite beyond the limits."""
+    if len(steps) > 0:
+        for joint in range(6):
+            if abs(steps[target, joint] - steps[source, joint]) > limits[joint]:
+                return INFINITE
+    if len(lean) > 0 and abs(lean[target] - lean[source]) > limits[6]:
+        return INFINITE
+    d = 0.0
+    for joint in range(6):
+        change = joints[target, joint] / ranges[joint] - joints[source, joint] / ranges[joint]
+        d += abs(change) if metric == ABSOLUTE else change * change
+    return weight * d
 
 
 @njit(cache=True, nogil=True)
@@ -266,30 +520,34 @@ def first_path(
 
     Rounding may lift every total of a layer over the threshold; then the least ones still tie.
     """
-    tile = np.zeros(ROWS * TILE)
-    none = np.zeros(1)
     spent = 0.0
     for layer in range(len(path)):
         start = offsets[layer]
         stop = offsets[layer + 1]
-        reached = node_cost[start:stop].copy()
-        if layer > 0:
-            node = path[layer - 1]
-            limits = gap_limits(layer - 1, step_limits, lean_limits)
-            point = joints[node : node + 1] / ranges
-            step = steps[node : node + 1].copy() if len(steps) > 0 else np.zeros((1, 6))
-            tilt = lean[node : node + 1].copy() if len(lean) > 0 else none
-            value = np.full(1, spent)
-            weight = gap_weight[layer - 1]
-            for low in range(start, stop, TILE):
-                high = min(low + TILE, stop)
-                padded = fill_tile(tile, joints, ranges, steps, lean, low, high)
-                relax_bounded(tile, padded, point, value, weight, metric, step, tilt, limits)
-                for target in range(low, high):
-                    reached[target - start] += tile[BEST_ROW * TILE + target - low]
+        limits = gap_limits(layer - 1, step_limits, lean_limits) if layer > 0 else np.empty(0)
+        reached = np.empty(stop - start)
         least = INFINITE
         for i in range(stop - start):
-            least = min(least, reached[i] + to_go[start + i])
+            node = start + i
+            reached[i] = node_cost[node]
+            # What cannot end below the least total is not needed exactly.
+            if layer > 0:
+                if spent + node_cost[node] + to_go[node] > max(threshold, least):
+                    reached[i] = INFINITE
+                    continue
+                edge = edge_cost(
+                    joints,
+                    ranges,
+                    gap_weight[layer - 1],
+                    metric,
+                    steps,
+                    lean,
+                    limits,
+                    path[layer - 1],
+                    node,
+                )
+                reached[i] = (spent + edge) + node_cost[node]
+            least = min(least, reached[i] + to_go[node])
         bound = max(threshold, least)
         for i in range(stop - start):
             if reached[i] + to_go[start + i] <= bound:

@@ -120,14 +120,15 @@ def heuristic_weights(graph: LayeredGraph, weight: float) -> FloatArray:
 def heuristic_values(graph: LayeredGraph, weight: float = HEURISTIC_WEIGHT) -> FloatArray:
     """(K,) heuristic of every node in scheme f1; infinite when the last layer is empty."""
     scales = heuristic_weights(graph, weight)
-    goals = (graph.joints / graph.ranges)[graph.layer(graph.layer_count - 1)]
+    points = graph.joints / graph.ranges
+    goals = points[graph.layer(graph.layer_count - 1)]
     values = np.full(graph.node_count, UNKNOWN)
     tile, zeros = np.empty(ROWS * TILE), np.zeros(len(goals))
     for layer in range(graph.layer_count):
         nodes, scale = graph.layer(layer), float(scales[layer])
         for low in range(nodes.start, nodes.stop, TILE):
             high = min(low + TILE, nodes.stop)
-            estimate(tile, graph.joints, graph.ranges, low, high, goals, zeros, scale, values)
+            estimate(tile, points, low, high, goals, zeros, scale, values)
     return values
 
 
@@ -217,8 +218,7 @@ class _BestFirst:
         """Push a tile of start nodes."""
         self._make_room(starts.stop - starts.start)
         open_starts(
-            self._graph.joints,
-            self._graph.ranges,
+            self._points,
             self._graph.node_cost,
             self._points[self._goals],
             float(self._weights[0]),

@@ -100,9 +100,7 @@ def outside(bodies, points):
     if bodies.kind == BOX:
         return (abs(local) - size).max(axis=1)
     faces = [ConvexHull(vertices).equations for vertices in bodies.vertices]
-    return np.array(
-        [(f[:, :3] @ x + f[:, 3]).max() for f, x in zip(faces, local, strict=True)]
-    )
+    return np.array([(f[:, :3] @ x + f[:, 3]).max() for f, x in zip(faces, local, strict=True)])
 
 
 def coal_distances(coal, bodies_a, bodies_b):

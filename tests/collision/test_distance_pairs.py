@@ -64,6 +64,18 @@ def test_distance_is_exact_within_a_micrometre(kinds, aligned, coal):
 
 @by_placement
 @by_pair
+def test_distance_is_the_least_of_a_convex_programme(kinds, aligned):
+    bodies_a, bodies_b = random_pairs(kinds, 8, 4, aligned=aligned)
+    found, _ = kernel_distances(bodies_a, bodies_b)
+    apart = np.flatnonzero(found > 0.0)
+    assert len(apart) > 3
+    for i in apart:
+        truth = programme_distance(bodies_a.body(i), bodies_b.body(i))
+        assert found[i] == pytest.approx(truth, rel=0.0, abs=TOLERANCE)
+
+
+@by_placement
+@by_pair
 def test_a_plane_that_parts_the_bodies_proves_the_distance(kinds, aligned):
     bodies_a, bodies_b = random_pairs(kinds, 300, 2, aligned=aligned)
     found, witnesses = kernel_distances(bodies_a, bodies_b)

@@ -69,6 +69,12 @@ def test_turn_number_equals_the_rule_in_whole_thousandths_of_a_degree(thousandth
     assert turn_number(math.radians(thousandths / 1000)) == expected
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+def test_half_a_turn_that_lost_its_last_digit_still_counts_as_half_a_turn(sign):
+    assert turn_number(sign * math.nextafter(math.pi, 0.0)) == sign
+    assert turn_number(sign * math.radians(179.9999)) == 0
+
+
 @given(configurations)
 def test_config_strings_are_read_back_as_written(config):
     assert parse_configuration(str(config)) == config

@@ -63,6 +63,13 @@ def test_joint_exactly_on_a_limit_after_a_turn_is_kept(m20ia):
     np.testing.assert_allclose(found, expected, atol=1e-9)
 
 
+def test_joint_past_a_limit_by_rounding_only_is_kept(m20ia):
+    joints = m20ia.limits[:, 1] + 5e-13
+    assert len(representatives(joints, m20ia.limits)) > 0
+    joints = m20ia.limits[:, 0] - 5e-13
+    assert len(representatives(joints, m20ia.limits)) > 0
+
+
 def test_joint_past_a_limit_by_more_than_rounding_is_dropped(m20ia):
     joints = np.radians([170, 0, 0, 0, 0, 0])
     joints[0] += 1e-11

@@ -1,5 +1,6 @@
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -232,3 +233,9 @@ def test_posts_are_found_by_name_and_an_unknown_name_lists_the_known_ones():
     assert all(name == post.name for name, post in POSTS.items())
     with pytest.raises(UnknownNameError, match="fanuc-joint"):
         post_named("kuka")
+
+
+def test_the_file_in_the_documentation_is_the_hand_checked_one():
+    page = Path(__file__).parents[2].joinpath("docs", "fanuc_ls.md").read_text(encoding="utf-8")
+    shown = page.split("```text\n")[1].split("```")[0]
+    assert shown.replace("→", "\t").replace("\n", "\r\n").encode("ascii") == GOLDEN.read_bytes()

@@ -256,11 +256,16 @@ def test_a_change_of_frame_between_moves_belongs_to_the_moves_below_it():
     lines = (
         "   1:  UFRAME_NUM=0 ;\n   2:  UTOOL_NUM[GP1]=1 ;\n   3:J P[1] 5% FINE    ;\n"
         "   4:  UTOOL_NUM=2 ;\n   5:J P[1] 5% FINE    ;\n   6:  UTOOL_NUM=R[1] ;\n"
-        "   7:J P[1] 5% FINE    ;\n"
+        "   7:J P[1] 5% FINE    ;\n   8:  UTOOL_NUM[GP2]=4 ;\n   9:J P[1] 5% FINE    ;\n"
     )
     found = read_program(source(lines), "S.LS")
     assert (found.uframe, found.utool) == (0, 1)
-    assert [(one.uframe, one.utool) for one in found.moves] == [(0, 1), (0, 2), (0, None)]
+    assert [(one.uframe, one.utool) for one in found.moves] == [
+        (0, 1),
+        (0, 2),
+        (0, None),
+        (0, None),
+    ]
     (sentence,) = found.frame_conflicts()
     assert "line 9" in sentence
     assert "P[1] was taught in UT 1, but 2 is selected" in sentence

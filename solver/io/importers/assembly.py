@@ -125,7 +125,7 @@ def agreed_frame(stated: Frame | None, place: Place, options: ImportOptions) -> 
     if stated is None or options.frame is None or stated is options.frame:
         return stated or options.frame or Frame.BEAM
     raise InputError(
-        f"the file states the frame {stated.value}, but the import states {options.frame.value}",
+        f"the file states the frame {stated.value}, but the import expected {options.frame.value}",
         place,
     )
 
@@ -135,7 +135,7 @@ def agreed_unit(stated: str | None, place: Place, options: ImportOptions) -> str
     if stated is None or options.unit is None or stated == options.unit:
         return stated or options.unit or "mm"
     raise InputError(
-        f"the file states the unit {stated}, but the import states {options.unit}", place
+        f"the file states the unit {stated}, but the import expected {options.unit}", place
     )
 
 
@@ -177,7 +177,7 @@ def _check_names(records: list[PassRecord]) -> None:
 def _finished(record: PassRecord, options: ImportOptions) -> Pass:
     points = record.points
     if not points:
-        raise InputError(f"pass {shown(record.name)} has no waypoints", record.place)
+        raise InputError(f"pass {shown(record.name)} has no waypoints, expected some", record.place)
     positions = np.array([point.position for point in points])
     _check_positions(points, positions)
     poses = np.zeros((len(points), 4, 4))

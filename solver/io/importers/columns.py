@@ -94,7 +94,7 @@ def columns_from_header(header: Row, file: str) -> Columns:
             raise InputError(_unknown_title(title), place)
         if field in index:
             raise InputError(
-                f"the title {shown(title)} names {field} again, first in column {index[field] + 1}",
+                f"the title {shown(title)} names {field} again, expected it only in column {index[field] + 1}",
                 place,
             )
         index[field] = number
@@ -108,7 +108,7 @@ def columns_from_titles(mapping: Mapping[str, str], header: Row, file: str) -> C
     index: dict[str, int] = {}
     units: dict[str, str] = {}
     for field, title in mapping.items():
-        _check_field(field)
+        _check_field(field, file)
         found = [number for number, cell in enumerate(header.cells) if cell == title.strip()]
         if len(found) != 1:
             state = f"occurs {len(found)} times" if found else "is missing"
@@ -128,10 +128,10 @@ def columns_from_numbers(mapping: Mapping[str, int], first: Row, file: str) -> C
     """Take the mapped column numbers, from 1, of a table without header."""
     index: dict[str, int] = {}
     for field, number in mapping.items():
-        _check_field(field)
+        _check_field(field, file)
         if not 1 <= number <= len(first.cells):
             raise InputError(
-                f"{field} is mapped to column {number}, but the row has {len(first.cells)}",
+                f"{field} is mapped to column {number}, expected 1 to {len(first.cells)}",
                 Place(file, first.line),
             )
         index[field] = number - 1
@@ -156,11 +156,12 @@ def _unknown_title(title: str) -> str:
     return f"no field is called {shown(title)}{hint}, expected one of {listed(FIELDS)}"
 
 
-def _check_field(field: str) -> None:
+def _check_field(field: str, file: str) -> None:
     if field not in FIELDS:
         raise InputError(
             f"the column mapping names the field {shown(field)}{suggestion(field, FIELDS)}, "
-            f"expected one of {listed(FIELDS)}"
+            f"expected one of {listed(FIELDS)}",
+            Place(file),
         )
 
 
@@ -184,15 +185,22 @@ def _check_groups(index: dict[str, int], line: int, file: str) -> None:
         missing = [field for field in group if field not in index]
         if missing and (len(missing) < len(group) or group is POSITION):
             what = "columns" if len(missing) > 1 else "column"
-            raise InputError(f"the table has no {what} {listed(missing)}", Place(file, line))
+            raise InputError(
+                f"the table has no {what} {listed(missing)}, expected all of {listed(group)}",
+                Place(file, line),
+            )
     stated = [group for group in (QUATERNION, WPR, NORMAL) if group[0] in index]
     if len(stated) > 1:
         place = Place(file, line, index[stated[1][0]] + 1)
         names = listed([" ".join(group) for group in stated])
-        raise InputError(f"the table states orientations twice, by {names}", place)
+        raise InputError(
+            f"the table states orientations twice, by {names}, expected one of them", place
+        )
     if TRAVEL[0] in index and NORMAL[0] not in index:
         place = Place(file, line, index[TRAVEL[0]] + 1)
-        raise InputError("the table has a travel direction but no normal (nx, ny, nz)", place)
+        raise InputError(
+            "the table has a travel direction but no normal, expected nx, ny and nz", place
+        )
 
 
 def _length_unit(index: dict[str, int], units: dict[str, str], line: int, file: str) -> str | None:

@@ -77,7 +77,9 @@ def _columns(table: Table, options: ImportOptions) -> tuple[Columns, Iterable[Ro
     if len(titles) == len(options.columns):
         return columns_from_titles(titles, table.first, table.file), table.rows()
     if titles:
-        raise InputError("the column mapping mixes titles and numbers, expected one of them")
+        raise InputError(
+            "the column mapping mixes titles and numbers, expected one of them", Place(table.file)
+        )
     numbers = {name: int(number) for name, number in options.columns.items()}
     columns = columns_from_numbers(numbers, table.first, table.file)
     return columns, chain([table.first], table.rows())
@@ -99,7 +101,8 @@ def _length_factor(table: Table, columns: Columns, options: ImportOptions) -> fl
         stated = _located("the unit", read_unit, directive.value, above)
         if unit is not None and unit != stated:
             raise InputError(
-                f"x, y and z have the unit {unit}, but line {directive.line} states {stated}", place
+                f"x, y and z have the unit {unit}, expected {stated} as in line {directive.line}",
+                place,
             )
         unit, place = stated, above
     return LENGTH_UNITS[agreed_unit(unit, place, options)]

@@ -234,9 +234,9 @@ def _events(events: _Cursor) -> tuple[Event, ...]:
 def _orientation(waypoint: _Cursor, members: dict[str, _Cursor]) -> tuple[Form, tuple[float, ...]]:
     stated = [name for name in ("quaternion", "wpr_deg", "normal") if name in members]
     if len(stated) > 1:
-        raise members[stated[1]].fault(f"is a second orientation beside {stated[0]}")
+        raise members[stated[1]].fault(f"is a second orientation beside {stated[0]}, expected one")
     if "travel" in members and "normal" not in members:
-        raise members["travel"].fault("stands without a normal")
+        raise members["travel"].fault("stands without a normal, expected both")
     if not stated:
         return Form.STATED, ()
     given = members[stated[0]]

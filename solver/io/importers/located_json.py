@@ -151,7 +151,9 @@ class _Parser:
         self._add(node)
         self._open.append(node)
         if len(self._open) > MAX_DEPTH:
-            raise self._fault(f"arrays and objects are nested more than {MAX_DEPTH} deep")
+            raise self._fault(
+                f"arrays and objects are nested deeper than expected (at most {MAX_DEPTH})"
+            )
         array = isinstance(node.value, list)
         self._expect = _Expect.VALUE_OR_END if array else _Expect.KEY_OR_END
         self._at += 1
@@ -173,7 +175,9 @@ class _Parser:
         self._require(allowed, _Expect.COMMA_OR_END)
         container = list if mark == "]" else dict
         if not isinstance(self._open[-1].value, container):
-            raise self._fault(f"{mark!r} closes what {self._text[self._open[-1].offset]!r} opened")
+            raise self._fault(
+                f"{mark!r} was found, expected the end of {self._text[self._open[-1].offset]!r}"
+            )
         self._open.pop()
         self._expect = _Expect.COMMA_OR_END if self._open else _Expect.NOTHING
         self._at += 1
@@ -187,12 +191,14 @@ class _Parser:
         self._require(_Expect.VALUE, _Expect.VALUE_OR_END, _Expect.KEY, _Expect.KEY_OR_END)
         found = _STRING.match(self._text, self._at)
         if not found:
-            raise self._fault("a text has no closing quote, or a control character in it")
+            raise self._fault(
+                "a text is cut off or has a control character in it, expected a closing quote"
+            )
         value = self._unescaped(found[0]) if "\\" in found[0] else found[0][1:-1]
         if self._expect in {_Expect.KEY, _Expect.KEY_OR_END}:
             members = self._open[-1].value
             if isinstance(members, dict) and value in members:
-                raise self._fault(f"the member {shown(value)} is given twice")
+                raise self._fault(f"the member {shown(value)} is given twice, expected it once")
             self._name = (value, self._at)
             self._expect = _Expect.COLON
         else:
@@ -203,9 +209,11 @@ class _Parser:
         try:
             value: str = json.loads(text)
         except ValueError:
-            raise self._fault(f"{shown(text)} has an escape that JSON does not know") from None
+            raise self._fault(
+                f"{shown(text)} has an unknown escape, expected one of JSON's"
+            ) from None
         if _SURROGATE.search(value):
-            raise self._fault(f"{shown(text)} has an escape of half a character")
+            raise self._fault(f"{shown(text)} has an escape of half a character, expected a pair")
         return value
 
     def _word(self) -> None:

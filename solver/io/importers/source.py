@@ -53,7 +53,7 @@ class Source:
                 fault = max(fault, error, key=lambda one: one.start)
         expected = encoding.upper() if encoding else "UTF-8" if skipped else "UTF-8 or GBK"
         raise InputError(
-            f"byte 0x{data[fault.start]:02X} is not {expected} text",
+            f"byte 0x{data[fault.start]:02X} does not belong here, expected {expected} text",
             self.place(skipped + fault.start),
         )
 
@@ -82,10 +82,12 @@ def read_source(path: str | Path) -> Source:
             with Path(path).open("rb") as file:
                 data = file.read(MAX_BYTES + 1)
     except FileNotFoundError:
-        raise InputError("there is no such file", place) from None
+        raise InputError("there is no such file, expected a path file", place) from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(f"the file cannot be read ({reason})", place) from error
+        raise InputError(
+            f"the file cannot be read ({reason}), expected a readable one", place
+        ) from error
     if status.st_size > MAX_BYTES or len(data) > MAX_BYTES:
         size = max(status.st_size, MAX_BYTES + 1)
         raise InputError(f"the file has {size:,} bytes, expected at most {MAX_BYTES:,}", place)

@@ -16,6 +16,9 @@ _LINE_END: Final = re.compile(r"\r\n|\n|\r")
 _DIRECTIVE: Final = re.compile(
     r"\s*(?:#+|//|;+)\s*(frame|unit|坐标系|单位)\s*[:=：]\s*(\S+)\s*", re.IGNORECASE
 )
+_SPREADSHEET_ERROR: Final = re.compile(r"#(?:REF!|N/A|VALUE!|NAME\?|DIV/0!|NUM!|NULL!)")
+"""What a failed formula leaves in a cell; as the first of its row it is no comment."""
+
 _DIRECTIVE_NAMES: Final = {"坐标系": "frame", "单位": "unit"}
 
 
@@ -114,7 +117,9 @@ def _next_cell(text: str, start: int, delimiter: str, place: Place) -> tuple[str
     while True:
         quote = text.find('"', end)
         if quote < 0:
-            raise InputError("a quoted cell has no closing quote on its line", place)
+            raise InputError(
+                "a quoted cell is open at the end of its line, expected a closing quote", place
+            )
         parts.append(text[end:quote])
         if not text.startswith('""', quote):
             break
@@ -145,7 +150,9 @@ def _is_blank(line: str) -> bool:
 
 def _is_comment(line: str, delimiter: str) -> bool:
     start = line.lstrip(" \t")
-    return start.startswith(("#", "//")) or (start.startswith(";") and delimiter != ";")
+    if start.startswith("#"):
+        return not _SPREADSHEET_ERROR.match(start)
+    return start.startswith("//") or (start.startswith(";") and delimiter != ";")
 
 
 def _note_directive(directives: dict[str, Directive], line: str, place: Place) -> None:
@@ -156,7 +163,7 @@ def _note_directive(directives: dict[str, Directive], line: str, place: Place) -
     name = _DIRECTIVE_NAMES.get(name, name)
     if name in directives:
         raise InputError(
-            f"the {name} is stated again, first in line {directives[name].line}", place
+            f"the {name} is stated again, expected it only in line {directives[name].line}", place
         )
     directives[name] = Directive(place.line or 0, found[2])
 

@@ -1,0 +1,92 @@
+"""A plain Python A* of the paper, the peer that the compiled searches are compared with.
+
+Lists, dicts and heapq, written as one would from the paper: edges and heuristic are computed
+when a node is generated, the heuristic once per node.
+"""
+
+from __future__ import annotations
+
+import heapq
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+Joints = Sequence[float]
+
+
+class PlainResult(NamedTuple):
+    path: list[int]
+    cost: float
+    expanded: int
+
+
+def plain_astar(
+    layers: Sequence[Sequence[Joints]],
+    node_costs: Sequence[Sequence[float]],
+    ranges: Joints,
+    weight: float = 0.9,
+) -> PlainResult:
+    """Multi-source A* to any node of the last layer; nodes are numbered through all layers.
+
+    `layers` holds the joints of every node of every layer [rad]; scheme f1 has node costs 0,
+    scheme f2 the safety penalty.
+    """
+    points = []
+    costs = []
+    layer_of = []
+    first_of = []
+    for number, (layer, layer_costs) in enumerate(zip(layers, node_costs, strict=True)):
+        first_of.append(len(points))
+        for joints, node_cost in zip(layer, layer_costs, strict=True):
+            points.append([angle / span for angle, span in zip(joints, ranges, strict=True)])
+            costs.append(node_cost)
+            layer_of.append(number)
+    first_of.append(len(points))
+    last_layer = len(layers) - 1
+    goals = points[first_of[last_layer] :]
+
+    heuristic = {}
+
+    def estimate(node):
+        if node not in heuristic:
+            heuristic[node] = weight * min(math.dist(points[node], goal) for goal in goals)
+        return heuristic[node]
+
+    best = {}
+    parent = {}
+    closed = set()
+    heap = []
+    if goals:
+        for node in range(first_of[1]):
+            best[node] = costs[node]
+            heapq.heappush(heap, (best[node] + estimate(node), node))
+    while heap:
+        _, node = heapq.heappop(heap)
+        if node in closed:
+            continue
+        closed.add(node)
+        if layer_of[node] == last_layer:
+            path = [node]
+            while path[-1] in parent:
+                path.append(parent[path[-1]])
+            return PlainResult(path[::-1], best[node], len(closed))
+        a0, a1, a2, a3, a4, a5 = points[node]
+        below = layer_of[node] + 1
+        for target in range(first_of[below], first_of[below + 1]):
+            if target in closed:
+                continue
+            b0, b1, b2, b3, b4, b5 = points[target]
+            edge = (
+                abs(b0 - a0)
+                + abs(b1 - a1)
+                + abs(b2 - a2)
+                + abs(b3 - a3)
+                + abs(b4 - a4)
+                + abs(b5 - a5)
+            )
+            reached = best[node] + edge + costs[target]
+            if reached < best.get(target, math.inf):
+                best[target] = reached
+                parent[target] = node
+                heapq.heappush(heap, (reached + estimate(target), target))
+    return PlainResult([], math.inf, len(closed))
