@@ -143,6 +143,7 @@ def generate(problem: PlanningProblem, monitor: Monitor | None = None) -> Candid
     space = np.empty((representative_capacity(problem.joint_limits), 6))
     principal = settings.turns is Turns.PRINCIPAL
     arm = np.array(robot.arm_lengths)
+    convention = robot.pendant_from_model
     total = shape[0] * shape[1]
     for begin in range(0, total, POSES_PER_CALL):
         checkpoint(monitor, "candidates", begin, total)
@@ -153,7 +154,7 @@ def generate(problem: PlanningProblem, monitor: Monitor | None = None) -> Candid
             local,
             touch,
             arm,
-            robot.pendant_from_model,
+            convention,
             limits,
             robot.elbow_limits,
             principal,
@@ -194,6 +195,8 @@ def _expand(
     robot = problem.robot
     space = np.empty((representative_capacity(problem.joint_limits), 6))
     total = outcome.shape[0] * outcome.shape[1]
+    convention = robot.pendant_from_model
+    limits = np.ascontiguousarray(problem.joint_limits)
     row = 0
     for begin in range(0, total, 16 * POSES_PER_CALL):
         checkpoint(monitor, "nodes", begin, total)
@@ -203,9 +206,9 @@ def _expand(
             joints,
             outcome,
             clearance,
-            robot.pendant_from_model,
+            convention,
             robot.model_from_pendant,
-            np.ascontiguousarray(problem.joint_limits),
+            limits,
             robot.elbow_limits,
             problem.settings.turns is Turns.PRINCIPAL,
             space,

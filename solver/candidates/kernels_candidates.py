@@ -5,7 +5,13 @@ import math
 import numpy as np
 from numba import njit
 
-from solver.collision.kernels_scene import check_pose
+from solver.collision.kernels_scene import (
+    FREE,
+    check_bodies,
+    check_pose,
+    check_self,
+    place_bodies,
+)
 from solver.kinematics.kernels_arm import (
     forward_frames,
     inverse_branches,
@@ -18,6 +24,7 @@ _UNREACHABLE = 1
 _JOINT_LIMIT = 2
 _SINGULAR = 3
 _COLLISION = 4
+_UNKNOWN = -1
 _TURN = 2.0 * math.pi
 _TOLERANCE = 1e-12
 
@@ -105,6 +112,8 @@ def evaluate_poses(
         n, o = p // orientations, p % orientations
         multiply(waypoints[n], reference_from_wrist[o], wrist)
         inverse_branches(arm, wrist, solved, found)
+        # The tool's pose is that of the wrist: one check serves all branches.
+        tool_status, tool_clearance = _UNKNOWN, np.inf
         for b in range(branches.shape[0]):
             branch = branches[b]
             clearance[n, o, b] = np.nan
@@ -122,10 +131,24 @@ def evaluate_poses(
             if manipulability(arm, solved[branch]) <= eta:
                 outcome[n, o, b] = _SINGULAR
                 continue
-            forward_frames(arm, solved[branch], frames)
-            status, d = check_pose(
-                scene, frames, touch[n], rotations, positions, witness, nearest, points
-            )
+            if tool_status == _UNKNOWN:
+                frames[6] = wrist
+                place_bodies(scene, scene.tool, bodies, frames, rotations, positions)
+                tool_status, tool_clearance = check_bodies(
+                    scene, scene.tool, bodies, touch[n], np.inf,
+                    rotations, positions, witness, nearest, points,
+                )
+            status, d = tool_status, tool_clearance
+            if status == FREE:
+                forward_frames(arm, solved[branch], frames)
+                place_bodies(scene, 0, scene.tool, frames, rotations, positions)
+                status, d = check_bodies(
+                    scene, 0, scene.tool, touch[n], tool_clearance,
+                    rotations, positions, witness, nearest, points,
+                )
+            if status == FREE:
+                status = check_self(scene, rotations, positions, witness)
+                d = d if status == FREE else np.nan
             clearance[n, o, b] = d
             outcome[n, o, b] = _FEASIBLE if status == 0 else _COLLISION + status - 1
 

@@ -68,7 +68,7 @@ def overlap(a, vertices_a, r, t, b, vertices_b, hint):
     for _ in range(IMPROVEMENTS):
         draw = 1e-6 - 1.5 * best
         apart = (t[0] + draw * n[0], t[1] + draw * n[1], t[2] + draw * n[2])
-        _, u, pa, pb = gjk(a, vertices_a, r, apart, b, vertices_b, n, math.inf)
+        _, u, pa, pb, _ = gjk(a, vertices_a, r, apart, b, vertices_b, n, math.inf)
         pa = minus(pa, scaled(draw, n))
         gap = separation(a, vertices_a, r, t, b, vertices_b, u)
         if gap <= best + 1e-9:

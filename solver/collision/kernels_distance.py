@@ -44,6 +44,9 @@ from solver.collision.kernels_shapes import (
 
 __all__ = ["convex_distance", "numbers_distance", "quick_lower_bound", "row_distance"]
 
+ROUNDING = 1e-12
+"""Gaps of cores below this are held for touching [m]."""
+
 
 @njit(cache=True, nogil=True)
 def _relative(p, position_a, q, position_b):
@@ -119,13 +122,13 @@ def _core_distance(a, vertices_a, r, t, b, vertices_b, cutoff, wants_depth):
                 return bound, n, pa, pb
         overlapping = length <= TOUCH
     if not overlapping:
-        bound, n, pa, pb = gjk(a, vertices_a, r, t, b, vertices_b, n, cutoff)
+        bound, n, pa, pb, overlapping = gjk(a, vertices_a, r, t, b, vertices_b, n, cutoff)
         if bound > 0.0:
             return bound, n, pa, pb
-    if not wants_depth:
+    if overlapping and not wants_depth:
         return -TOUCH, n, t, t
     bound, n, pa, pb = overlap(a, vertices_a, r, t, b, vertices_b, n)
-    return min(bound, 0.0), n, pa, pb
+    return (bound if bound > ROUNDING else min(bound, 0.0)), n, pa, pb
 
 
 @njit(cache=True, nogil=True)

@@ -91,9 +91,10 @@ def _blend(wa, wb, wc, a, b, c):
 def gjk(a, vertices_a, r, t, b, vertices_b, start, cutoff):
     """Distance of two cores, from any first guess `start` of the direction from B to A.
 
-    Returns (bound, n, point of A, point of B): the certified lower bound of the distance, the
-    unit direction it holds for, and the witnesses. The search ends when the bound exceeds
-    `cutoff`. A bound that is not positive says that no separation was found.
+    Returns (bound, n, point of A, point of B, inside): the certified lower bound of the
+    distance, the unit direction it holds for, the witnesses, and whether the cores were seen to
+    overlap. The search ends when the bound exceeds `cutoff`. A bound that is not positive says
+    that no separation was found.
     """
     length = norm(start)
     n = scaled(1.0 / length, start) if length > 0.0 else (0.0, 0.0, 1.0)
@@ -105,6 +106,7 @@ def gjk(a, vertices_a, r, t, b, vertices_b, start, cutoff):
     w1, w2 = 0.0, 0.0
     v, near = zero, zero
     count = 0
+    inside = False
     distance = math.inf
     for _ in range(MOST_STEPS):
         pa = support_of_first(a, vertices_a, r, t, (-n[0], -n[1], -n[2]))
@@ -126,6 +128,7 @@ def gjk(a, vertices_a, r, t, b, vertices_b, start, cutoff):
         elif count == 3:
             w0, w1, w2, w3 = tetrahedron_weights(y0, y1, y2, y3)
             if w0 + w1 > 1.5:
+                inside = True
                 break
         while w0 == 0.0:
             y0, y1, y2 = y1, y2, y3
@@ -148,4 +151,4 @@ def gjk(a, vertices_a, r, t, b, vertices_b, start, cutoff):
         if length <= TOUCH or best > cutoff:
             break
         n = scaled(1.0 / length, v)
-    return best, best_n, near, minus(near, v)
+    return best, best_n, near, minus(near, v), inside

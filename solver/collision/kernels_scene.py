@@ -1,5 +1,7 @@
 """Kernels that check one pose of the whole scene: clearance, margins and self pairs."""
 
+import math
+
 import numpy as np
 from numba import njit
 
@@ -10,15 +12,17 @@ HIT = 1
 MARGIN_BROKEN = 2
 SELF_BROKEN = 3
 
+ROUNDING = 1e-9
+"""What culling by spheres allows for rounding [m]."""
+
 _CLEARANCE = 1
 _CONTACT = 3
-_BOX = 3
 
 
 @njit(cache=True, nogil=True)
-def place_bodies(scene, frames, rotations, positions):
-    """Poses of all moving bodies in fanuc_world from the (7, 3, 4) D-H frames."""
-    for m in range(scene.frame.shape[0]):
+def place_bodies(scene, first, last, frames, rotations, positions):
+    """Poses of moving bodies first..last-1 in fanuc_world from the (7, 3, 4) D-H frames."""
+    for m in range(first, last):
         f = scene.frame[m]
         for r in range(3):
             for c in range(3):
@@ -96,43 +100,47 @@ def _fixed_bound(scene, rotations, positions, m, f):
 
 
 @njit(cache=True, nogil=True)
-def _cluster_bound(scene, rotations, positions, m, c):
-    return quick_lower_bound(
-        scene.moving.kind[m],
-        scene.moving.size[m],
-        rotations[m],
-        positions[m],
-        _BOX,
-        scene.cluster_half[c],
-        scene.cluster_rotation[c],
-        scene.cluster_position[c],
-    )
+def _cluster_bound(scene, positions, m, c):
+    """Distance of a moving body's bounding sphere to the box around a cluster, never too large."""
+    dx = positions[m, 0] - scene.cluster_position[c, 0]
+    dy = positions[m, 1] - scene.cluster_position[c, 1]
+    dz = positions[m, 2] - scene.cluster_position[c, 2]
+    total = 0.0
+    for k in range(3):
+        along = (
+            dx * scene.cluster_rotation[c, 0, k]
+            + dy * scene.cluster_rotation[c, 1, k]
+            + dz * scene.cluster_rotation[c, 2, k]
+        )
+        beyond = abs(along) - scene.cluster_half[c, k]
+        if beyond > 0.0:
+            total += beyond * beyond
+    return math.sqrt(total) - scene.radius[m] - ROUNDING
 
 
 @njit(cache=True, nogil=True)
-def check_pose(scene, frames, touch, rotations, positions, witness, nearest, points):
-    """Outcome and clearance of one pose; stops at the first pair that is out.
+def check_bodies(
+    scene, first, last, touch, best, rotations, positions, witness, nearest, points
+):
+    """Check placed moving bodies first..last-1 against the fixed ones; stop when one is out.
 
-    `rotations` (m, 3, 3), `positions` (m, 3) and `witness` (2, 3) are work space; `nearest`
-    (2,) receives the rows of the clearance pair and `points` (2, 3) its nearest points.
-    Returns the outcome and the clearance d [m] (inf when no pair counts in d). Moving bodies
-    are taken from the tool backwards, since the tool is what most often touches first.
+    `best` is the clearance so far [m]; `witness` (2, 3) is work space; `nearest` (2,) receives
+    the rows of the pair that lowers the clearance, `points` (2, 3) its nearest points. Returns
+    the outcome and the clearance [m], nan when a margin is broken.
     """
-    place_bodies(scene, frames, rotations, positions)
-    best = np.inf
-    nearest[0] = -1
-    nearest[1] = -1
-    for m in range(scene.frame.shape[0] - 1, -1, -1):
+    for m in range(last - 1, first - 1, -1):
         for c in range(scene.cluster_start.shape[0]):
             if not scene.cluster_rules[m, c]:
                 continue
-            bound = _cluster_bound(scene, rotations, positions, m, c)
+            bound = _cluster_bound(scene, positions, m, c)
+            if bound >= best and bound > scene.widest[m]:
+                continue
             for f in range(scene.cluster_start[c], scene.cluster_stop[c]):
                 rule = scene.rule[m, f]
                 if rule == 0:
                     continue
                 if rule == _CLEARANCE:
-                    if bound >= best or _fixed_bound(scene, rotations, positions, m, f) >= best:
+                    if _fixed_bound(scene, rotations, positions, m, f) >= best:
                         continue
                     d = fixed_distance(scene, rotations, positions, m, f, witness)
                     if d < best:
@@ -144,12 +152,24 @@ def check_pose(scene, frames, touch, rotations, positions, witness, nearest, poi
                             return HIT, best
                 else:
                     least = pair_threshold(scene, m, f, touch)
-                    if bound > least or _fixed_bound(scene, rotations, positions, m, f) > least:
+                    if _fixed_bound(scene, rotations, positions, m, f) > least:
                         continue
                     if fixed_distance(scene, rotations, positions, m, f, witness) <= least:
                         return MARGIN_BROKEN, np.nan
+    return FREE, best
+
+
+@njit(cache=True, nogil=True)
+def check_self(scene, rotations, positions, witness):
+    """Whether every self pair of the placed bodies keeps its margin."""
     for p in range(scene.self_pairs.shape[0]):
         a, b = scene.self_pairs[p, 0], scene.self_pairs[p, 1]
+        dx = positions[a, 0] - positions[b, 0]
+        dy = positions[a, 1] - positions[b, 1]
+        dz = positions[a, 2] - positions[b, 2]
+        spheres = scene.radius[a] + scene.radius[b] + scene.self_margin + ROUNDING
+        if dx * dx + dy * dy + dz * dz > spheres * spheres:
+            continue
         bound = quick_lower_bound(
             scene.moving.kind[a],
             scene.moving.size[a],
@@ -163,8 +183,28 @@ def check_pose(scene, frames, touch, rotations, positions, witness, nearest, poi
         if bound > scene.self_margin:
             continue
         if self_distance(scene, rotations, positions, a, b, witness) <= scene.self_margin:
-            return SELF_BROKEN, np.nan
-    return FREE, best
+            return SELF_BROKEN
+    return FREE
+
+
+@njit(cache=True, nogil=True)
+def check_pose(scene, frames, touch, rotations, positions, witness, nearest, points):
+    """Outcome and clearance of one posture; stops at the first pair that is out.
+
+    `rotations` (m, 3, 3), `positions` (m, 3) and `witness` (2, 3) are work space; `nearest`
+    (2,) receives the rows of the clearance pair, -1 for none, and `points` (2, 3) its nearest
+    points. Returns the outcome and the clearance d [m] (inf when no pair counts in d).
+    """
+    bodies = scene.frame.shape[0]
+    nearest[0] = -1
+    nearest[1] = -1
+    place_bodies(scene, 0, bodies, frames, rotations, positions)
+    status, d = check_bodies(
+        scene, 0, bodies, touch, np.inf, rotations, positions, witness, nearest, points
+    )
+    if status == FREE and check_self(scene, rotations, positions, witness) != FREE:
+        return SELF_BROKEN, np.nan
+    return status, d
 
 
 @njit(cache=True, nogil=True)
@@ -173,7 +213,7 @@ def all_distances(scene, frames, rotations, positions, fixed, among, fixed_point
 
     Pairs without a rule are left as they are. Nothing stops early: this is for explanations.
     """
-    place_bodies(scene, frames, rotations, positions)
+    place_bodies(scene, 0, scene.frame.shape[0], frames, rotations, positions)
     for m in range(scene.frame.shape[0]):
         for f in range(scene.rule.shape[1]):
             if scene.rule[m, f] != 0:

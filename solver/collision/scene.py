@@ -13,6 +13,7 @@ always touch are no pairs.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -22,7 +23,17 @@ from numpy.typing import NDArray
 from solver.collision.distance import pack_shape
 from solver.kinematics.arm import link_offsets
 from solver.model.problem import PlanningProblem
-from solver.model.shapes import Body, Box, ConvexShape, Hull, Mesh, Sphere, ToolRole
+from solver.model.shapes import (
+    Body,
+    Box,
+    Capsule,
+    ConvexShape,
+    Cylinder,
+    Hull,
+    Mesh,
+    Sphere,
+    ToolRole,
+)
 from solver.transforms import FloatArray, IntArray, inverse, rigid
 
 NO_PAIR, CLEARANCE, MARGIN, CONTACT = 0, 1, 2, 3
@@ -45,14 +56,18 @@ class PackedBodies(NamedTuple):
 class PackedScene(NamedTuple):
     """What the kernels read; all poses of fixed bodies are in fanuc_world.
 
-    `frame` (m,) is the D-H frame that carries each moving body. `bound` holds a simple body
+    `frame` (m,) is the D-H frame that carries each moving body, `radius` (m,) that of the
+    sphere about its origin that contains it; rows from `tool` on belong to the tool. `bound` holds a simple body
     around each fixed one, for culling: itself, or a box for a hull. Fixed bodies are ordered by
     cluster; `cluster_*` are boxes around them for culling. `rule`, `threshold` are (m, f);
     `touch_group` (f,) numbers the workpiece's groups (-1 elsewhere); `depth` (m,) belongs to
-    contact bodies; `self_pairs` (p, 2) are rows of the moving bodies.
+    contact bodies; `widest` (m,) is the largest threshold of a row, -inf where it has only
+    clearance rules; `self_pairs` (p, 2) are rows of the moving bodies.
     """
 
     frame: IntArray
+    radius: FloatArray
+    tool: int
     moving: PackedBodies
     fixed: PackedBodies
     bound: PackedBodies
@@ -66,6 +81,7 @@ class PackedScene(NamedTuple):
     threshold: FloatArray
     touch_group: IntArray
     depth: FloatArray
+    widest: FloatArray
     self_pairs: IntArray
     self_margin: float
 
@@ -150,6 +166,8 @@ def build_scene(problem: PlanningProblem) -> CollisionScene:
     boxes = [_enclosing_box([fixed[i] for i in range(a, b)]) for a, b in clusters]
     packed = PackedScene(
         frame=np.array([frame for _, frame, _, _ in moving], np.int64),
+        radius=np.array([_radius(shape) for _, _, shape, _ in moving]),
+        tool=sum(label.owner == "robot" for label in labels),
         moving=_pack([(shape, pose) for _, _, shape, pose in moving]),
         fixed=_pack([(shape, pose) for _, shape, pose in fixed]),
         bound=_pack([_simple_bound(shape, pose) for _, shape, pose in fixed]),
@@ -165,6 +183,7 @@ def build_scene(problem: PlanningProblem) -> CollisionScene:
         threshold=threshold,
         touch_group=np.array(touch, np.int64),
         depth=depth,
+        widest=np.where(rule > CLEARANCE, threshold, -np.inf).max(axis=1, initial=-np.inf),
         self_pairs=_self_pairs(problem, labels),
         self_margin=problem.settings.self_margin or 0.0,
     )
@@ -267,8 +286,13 @@ def _fixed_bodies(
             meshes.append((label, body.shape, world_from_piece @ body.pose))
         else:
             convex.append((label, body.shape, world_from_piece @ body.pose))
-    if convex:
-        clusters.append((0, len(convex)))
+    groups = [label.group for label, _, _ in convex]
+    for first, group in enumerate(groups):
+        if first == 0 or groups[first - 1] != group:
+            last = first + 1
+            while last < len(groups) and groups[last] == group:
+                last += 1
+            clusters.append((first, last))
     for body in problem.fixtures:
         label = BodyLabel("fixture", body.group, body.name)
         if isinstance(body.shape, Mesh):
@@ -294,6 +318,18 @@ def _pack(bodies: list[tuple[ConvexShape, FloatArray]]) -> PackedBodies:
         stop=stop,
         vertices=np.concatenate(vertices) if vertices else np.zeros((0, 3)),
     )
+
+
+def _radius(shape: ConvexShape) -> float:
+    """Radius of the sphere about the body's origin that contains it [m]."""
+    if isinstance(shape, Sphere):
+        return shape.radius
+    if isinstance(shape, Capsule):
+        return shape.length / 2 + shape.radius
+    if isinstance(shape, Cylinder):
+        return math.hypot(shape.length / 2, shape.radius)
+    corners = shape.size / 2 if isinstance(shape, Box) else shape.vertices
+    return float(np.linalg.norm(corners, axis=-1).max())
 
 
 def _simple_bound(shape: ConvexShape, pose: FloatArray) -> tuple[ConvexShape, FloatArray]:

@@ -18,7 +18,7 @@ from numba import njit
 from solver.transforms import FloatArray, IntArray
 
 TILE = 32
-FEWEST = 8
+FEWEST = 16
 KEYS = 64
 LEAN_ROW = 12
 BEST_ROW = 13
@@ -39,11 +39,12 @@ def group(
     stop: int,
     order: IntArray,
     first: IntArray,
+    cluster_key: IntArray,
 ) -> int:
     """Sort nodes start..stop-1 by which joints exceed `middle`, and cut them into clusters.
 
-    Writes the nodes to `order` and where each cluster begins to `first`; returns the number of
-    clusters. A cluster holds at most a tile; small ones are joined.
+    Writes the nodes to `order`, where each cluster begins to `first` and its key to
+    `cluster_key`; returns the number of clusters. A cluster holds at most a tile; small ones are joined.
     """
     counts = np.zeros(KEYS + 1, dtype=np.int64)
     count = stop - start
@@ -65,6 +66,7 @@ def group(
         pieces = (end - begin + TILE - 1) // TILE
         for piece in range(pieces):
             first[clusters] = begin + (end - begin) * piece // pieces
+            cluster_key[clusters] = key
             clusters += 1
         begin = end
     first[clusters] = count
@@ -240,7 +242,7 @@ def gap_limits(gap: int, step_limits: FloatArray, lean_limits: FloatArray) -> Fl
 
 
 @njit(cache=True, nogil=True)
-def box_cost(
+def box_improves(
     value: float,
     weight: float,
     metric: int,
@@ -250,8 +252,9 @@ def box_cost(
     other_low: FloatArray,
     other_high: FloatArray,
     target: int,
-) -> float:
-    """Lower bound of value + weight * distance between two boxes."""
+    worst: float,
+) -> bool:
+    """Whether value + weight * distance between two boxes can be below `worst`."""
     d = 0.0
     for joint in range(6):
         apart = max(
@@ -260,9 +263,9 @@ def box_cost(
             other_low[target, joint] - high[source, joint],
         )
         d += apart if metric == ABSOLUTE else apart * apart
-    if metric == EUCLIDEAN:
-        d = np.sqrt(d)
-    return value + weight * d
+        if metric != EUCLIDEAN and value + weight * d >= worst:
+            return False
+    return metric != EUCLIDEAN or value + weight * np.sqrt(d) < worst
 
 
 @njit(cache=True, nogil=True)
@@ -306,25 +309,34 @@ def relax_clusters(
     metric: int,
     bounded: bool,
     limits: FloatArray,
-    bounds: FloatArray,
+    guess: int,
 ) -> None:
-    """Fill the tile with a target cluster and relax it from all source clusters that matter."""
+    """Fill the tile with a target cluster and relax it from all source clusters that matter.
+
+    The source cluster `guess` comes first: the lower its costs, the more others are skipped.
+    """
     begin = other_first[target]
     count = other_first[target + 1] - begin
     padded = fill_tile(tile, other_rows, begin, begin + count, 13 if bounded else 6)
-    nearest = 0
-    for source in range(clusters):
-        bounds[source] = box_cost(
-            least[source], weight, metric, low, high, source, other_low, other_high, target
-        )
-        if bounded and not boxes_allow(limits, low, high, source, other_low, other_high, target):
-            bounds[source] = INFINITE
-        if bounds[source] < bounds[nearest]:
-            nearest = source
     worst = INFINITE
     for turn in range(clusters + 1):
-        source = nearest if turn == 0 else turn - 1
-        if bounds[source] >= worst or (turn > 0 and source == nearest):
+        source = guess if turn == 0 else turn - 1
+        if least[source] >= worst or (turn > 0 and source == guess):
+            continue
+        if not box_improves(
+            least[source],
+            weight,
+            metric,
+            low,
+            high,
+            source,
+            other_low,
+            other_high,
+            target,
+            worst,
+        ):
+            continue
+        if bounded and not boxes_allow(limits, low, high, source, other_low, other_high, target):
             continue
         if bounded:
             relax_bounded(
@@ -339,9 +351,7 @@ def relax_clusters(
                 limits,
             )
         else:
-            relax(
-                tile, padded, rows, values, first[source], first[source + 1], weight, metric
-            )
+            relax(tile, padded, rows, values, first[source], first[source + 1], weight, metric)
         worst = -INFINITE
         for j in range(count):
             worst = max(worst, tile[BEST_ROW * TILE + j])
@@ -380,7 +390,7 @@ def sweep(
         size = max(size, offsets[gap + 1] - offsets[gap], offsets[gap + 2] - offsets[gap + 1])
     most = size // FEWEST + size // TILE + 2
     tile = np.zeros(ROWS * TILE)
-    bounds = np.empty(most)
+    key = np.empty((2, most), dtype=np.int64)
     least = np.empty(most)
     source_values = np.empty(size)
     order = np.empty((2, size), dtype=np.int64)
@@ -406,6 +416,7 @@ def sweep(
                 offsets[source_layer + 1],
                 order[side],
                 first[side],
+                key[side],
             )
             gather(
                 joints,
@@ -422,7 +433,7 @@ def sweep(
         other = 1 - side
         begin = offsets[target_layer] + piece_low
         end = min(offsets[target_layer] + piece_high, offsets[target_layer + 1])
-        targets = group(joints, middle, begin, end, order[other], first[other])
+        targets = group(joints, middle, begin, end, order[other], first[other], key[other])
         gather(
             joints,
             ranges,
@@ -442,7 +453,13 @@ def sweep(
                 value = values[node] if forward else values[node] + node_cost[node]
                 source_values[i] = value
                 least[cluster] = min(least[cluster], value)
-        for target in range(targets):
+        guess = 0
+        if clusters == 0:
+            for node in range(begin, end):
+                values[node] = INFINITE
+        for target in range(targets if clusters > 0 else 0):
+            while guess + 1 < clusters and key[side, guess + 1] <= key[other, target]:
+                guess += 1
             relax_clusters(
                 tile,
                 rows[side],
@@ -461,11 +478,11 @@ def sweep(
                 metric,
                 bounded,
                 limits,
-                bounds,
+                guess,
             )
             for i in range(first[other, target], first[other, target + 1]):
                 node = order[other, i]
-                best = tile[BEST_ROW * TILE + i - first[other, target]] if clusters else INFINITE
+                best = tile[BEST_ROW * TILE + i - first[other, target]]
                 if widest:
                     values[node] = max(best, node_cost[node])
                 else:
@@ -475,29 +492,15 @@ def sweep(
 
 
 @njit(cache=True, nogil=True)
-def edge_cost(
-    joints: FloatArray,
-    ranges: FloatArray,
-    weight: float,
-    metric: int,
-    steps: FloatArray,
-    lean: FloatArray,
-    limits: FloatArray,
-    source: int,
-    target: int,
-) -> float:
-    """Cost of one edge by the operations of `relax`, infinite beyond the limits."""
+def step_allowed(
+    steps: FloatArray, lean: FloatArray, limits: FloatArray, source: int, target: int
+) -> bool:
+    """Whether the steps between two nodes stay within the limits."""
     if len(steps) > 0:
         for joint in range(6):
             if abs(steps[target, joint] - steps[source, joint]) > limits[joint]:
-                return INFINITE
-    if len(lean) > 0 and abs(lean[target] - lean[source]) > limits[6]:
-        return INFINITE
-    d = 0.0
-    for joint in range(6):
-        change = joints[target, joint] / ranges[joint] - joints[source, joint] / ranges[joint]
-        d += abs(change) if metric == ABSOLUTE else change * change
-    return weight * d
+                return False
+    return not (len(lean) > 0 and abs(lean[target] - lean[source]) > limits[6])
 
 
 @njit(cache=True, nogil=True)
@@ -521,36 +524,43 @@ def first_path(
     Rounding may lift every total of a layer over the threshold; then the least ones still tie.
     """
     spent = 0.0
+    limits = np.full(7, INFINITE)
+    point = np.zeros(6)
     for layer in range(len(path)):
         start = offsets[layer]
         stop = offsets[layer + 1]
-        limits = gap_limits(layer - 1, step_limits, lean_limits) if layer > 0 else np.empty(0)
-        reached = np.empty(stop - start)
+        weight = 0.0
+        before = 0
+        if layer > 0:
+            before = path[layer - 1]
+            weight = gap_weight[layer - 1]
+            limits = gap_limits(layer - 1, step_limits, lean_limits)
+            for joint in range(6):
+                point[joint] = joints[before, joint] / ranges[joint]
+        chosen = -1
+        chosen_cost = INFINITE
         least = INFINITE
-        for i in range(stop - start):
-            node = start + i
-            reached[i] = node_cost[node]
-            # What cannot end below the least total is not needed exactly.
+        for node in range(start, stop):
+            reached = spent + node_cost[node]
             if layer > 0:
-                if spent + node_cost[node] + to_go[node] > max(threshold, least):
-                    reached[i] = INFINITE
+                d = 0.0
+                for joint in range(6):
+                    change = joints[node, joint] / ranges[joint] - point[joint]
+                    d += abs(change) if metric == ABSOLUTE else change * change
+                    # Partial sums only grow: a node that is over already cannot be chosen.
+                    reached = (spent + weight * d) + node_cost[node]
+                    if reached + to_go[node] >= least and reached + to_go[node] > threshold:
+                        break
+                if not step_allowed(steps, lean, limits, before, node):
                     continue
-                edge = edge_cost(
-                    joints,
-                    ranges,
-                    gap_weight[layer - 1],
-                    metric,
-                    steps,
-                    lean,
-                    limits,
-                    path[layer - 1],
-                    node,
-                )
-                reached[i] = (spent + edge) + node_cost[node]
-            least = min(least, reached[i] + to_go[node])
-        bound = max(threshold, least)
-        for i in range(stop - start):
-            if reached[i] + to_go[start + i] <= bound:
-                path[layer] = start + i
-                spent = reached[i]
+            total = reached + to_go[node]
+            if total <= threshold:
+                chosen = node
+                chosen_cost = reached
                 break
+            if total < least:
+                least = total
+                chosen = node
+                chosen_cost = reached
+        path[layer] = chosen
+        spent = chosen_cost

@@ -17,7 +17,7 @@ STAGE = "search"
 PIECE_EDGES = 8_000_000
 """Edges looked at between two checkpoints; under 20 ms on one core."""
 
-MIDDLE_SAMPLE = 4096
+MIDDLE_SAMPLE = 512
 """Nodes from which the angles between clusters are taken."""
 
 GAP_WORK = 500

@@ -8,21 +8,51 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 
+def near_pairs(first, second, beyond=None):
+    """Rows of triangles whose bounding balls are no further apart than some pair surely is."""
+    (c, r), (d, q) = (_balls(first), _balls(second))
+    apart = np.linalg.norm(c[:, None] - d[None], axis=2)
+    limit = apart.min() if beyond is None else beyond
+    return np.nonzero(apart - r[:, None] - q[None] <= limit + 1e-12)
+
+
+def _balls(triangles):
+    centre = triangles.mean(axis=1)
+    return centre, np.linalg.norm(triangles - centre[:, None], axis=2).max(axis=1)
+
+
 def triangle_distance(first, second):
     """Smallest distance of triangles (a, 3, 3) and (b, 3, 3) whose surfaces do not cross."""
-    one, two = first[:, None], second[None]
-    least = np.inf
-    for i in range(3):
-        for j in range(3):
-            least = min(
-                least,
-                _segments(
-                    one[:, :, i], one[:, :, (i + 1) % 3], two[:, :, j], two[:, :, (j + 1) % 3]
-                ).min(),
+    rows, columns = near_pairs(first, second)
+    one, two = first[rows], second[columns]
+    corners = range(3)
+    squares = [
+        _segments(one[:, i], one[:, (i + 1) % 3], two[:, j], two[:, (j + 1) % 3])
+        for i in corners
+        for j in corners
+    ]
+    squares += [_over_face(one[:, i], two) for i in corners]
+    squares += [_over_face(two[:, i], one) for i in corners]
+    return np.sqrt(min(square.min() for square in squares))
+
+
+def surfaces_cross(first, second):
+    """Whether an edge of one set of triangles passes through a face of the other."""
+    rows, columns = near_pairs(first, second, beyond=0.0)
+    one, two = first[rows], second[columns]
+    for edges, faces in ((one, two), (two, one)):
+        a, b, c = faces[:, 0], faces[:, 1], faces[:, 2]
+        normal = np.cross(b - a, c - a)
+        for i in range(3):
+            p, q = edges[:, i], edges[:, (i + 1) % 3]
+            sides = np.array(
+                [(np.cross(u - p, v - p) * (q - p)).sum(-1) for u, v in ((a, b), (b, c), (c, a))]
             )
-    for i in range(3):
-        least = min(least, _over_face(one[:, :, i], two).min(), _over_face(two[:, :, i], one).min())
-    return np.sqrt(least)
+            through = (sides > 0).all(axis=0) | (sides < 0).all(axis=0)
+            opposite = ((p - a) * normal).sum(-1) * ((q - a) * normal).sum(-1) < 0
+            if (through & opposite).any():
+                return True
+    return False
 
 
 def _segments(p, q, a, b):
@@ -48,12 +78,12 @@ def _to_segment(point, start, along):
 
 def _over_face(point, face):
     """Squared height over the face, infinite where the foot is outside it."""
-    a, b, c = face[:, :, 0], face[:, :, 1], face[:, :, 2]
+    a, b, c = face[:, 0], face[:, 1], face[:, 2]
     normal = np.cross(b - a, c - a)
     square = (normal * normal).sum(-1)
-    height = ((point - a) * normal).sum(-1) / square
+    height = ((point - a) * normal).sum(-1) / np.where(square > 0.0, square, 1.0)
     foot = point - height[..., None] * normal
-    within = np.ones(height.shape, dtype=bool)
+    within = np.broadcast_to(square > 0.0, height.shape).copy()
     for u, v in ((a, b), (b, c), (c, a)):
         within &= (np.cross(v - u, foot - u) * normal).sum(-1) >= 0.0
     return np.where(within, height**2 * square, np.inf)
@@ -103,10 +133,8 @@ def beam_section(height, width, thick, length):
         ]
     )
     outline = 0.5 * outline
-    cap = np.array(
-        [[0, 1, 2], [0, 2, 3], [0, 3, 10], [0, 10, 11], [3, 4, 9], [3, 9, 10]]
-        + [[4, 5, 6], [4, 6, 7], [4, 7, 9], [9, 7, 8]]
-    )
+    web = [[0, 1, 2], [0, 2, 3], [0, 3, 10], [0, 10, 11], [3, 4, 9], [3, 9, 10]]
+    cap = np.array([*web, [4, 5, 6], [4, 6, 7], [4, 7, 9], [9, 7, 8]])
     vertices = np.vstack(
         [np.column_stack([np.full(12, x), outline]) for x in (-0.5 * length, 0.5 * length)]
     )

@@ -59,7 +59,7 @@ def random_pairs(kinds, count=60):
     return [random_bodies(rng, kind, count, aligned=False) for kind in kinds]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(shapes, poses, shapes, poses)
 def test_distance_and_points_are_the_same_seen_from_the_other_body(a, pose_a, b, pose_b):
     one, other = distance(a, pose_a, b, pose_b), distance(b, pose_b, a, pose_a)
@@ -71,7 +71,7 @@ def test_distance_and_points_are_the_same_seen_from_the_other_body(a, pose_a, b,
         assert other.distance < 1e-8
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(shapes, poses, shapes, poses, poses)
 def test_distance_does_not_change_when_both_bodies_are_moved_alike(a, pose_a, b, pose_b, motion):
     still = distance(a, pose_a, b, pose_b)
@@ -84,7 +84,7 @@ def test_distance_does_not_change_when_both_bodies_are_moved_alike(a, pose_a, b,
         assert moved.distance < 1e-8
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(shapes, poses, shapes, poses, st.floats(1e-6, 0.5))
 def test_drawing_bodies_apart_along_their_nearest_points_adds_that_much(a, pose_a, b, pose_b, way):
     first = distance(a, pose_a, b, pose_b)

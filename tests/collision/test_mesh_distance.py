@@ -4,7 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from mesh_oracle import hull_mesh, moved, random_pose, random_solid, triangle_distance
+from mesh_oracle import (
+    hull_mesh,
+    moved,
+    random_pose,
+    random_solid,
+    surfaces_cross,
+    triangle_distance,
+)
 
 from solver.collision.mesh_distance import (
     MeshObstacle,
@@ -46,39 +53,17 @@ def random_shape(rng, kind):
     return Hull(vertices), vertices[faces], 0.0, 0.0
 
 
-def segments_cross_no_face(pieces, solid):
-    """Whether no edge of one set of triangles passes through a face of the other."""
-    for edges, faces in ((pieces, solid), (solid, pieces)):
-        a, b, c = (faces[:, i] for i in range(3))
-        for i in range(3):
-            p, q = edges[:, None, i], edges[:, None, (i + 1) % 3]
-            sides = [
-                np.einsum("...i,...i", np.cross(u - p, v - p), q - p)
-                for u, v in ((a, b), (b, c), (c, a))
-            ]
-            through = np.all([s > 0 for s in sides], 0) | np.all([s < 0 for s in sides], 0)
-            normal = np.cross(b - a, c - a)
-            opposite = ((p - a) * normal).sum(-1) * ((q - a) * normal).sum(-1) < 0
-            if (through & opposite).any():
-                return False
-    return True
-
-
-@pytest.mark.parametrize("square", [False, True], ids=["turned", "square"])
-@pytest.mark.parametrize("shape_kind", SHAPES)
-@pytest.mark.parametrize("solid_kind", SOLIDS)
-def test_mesh_clearance_is_at_most_brute_force_and_less_by_at_most_the_tolerance(
-    solid_kind, shape_kind, square
-):
+def check_against_brute_force(solid_kind, shape_kind, square, trials):
+    """Compare random separated pairs; returns how many there were."""
     rng = np.random.default_rng([SOLIDS.index(solid_kind), SHAPES.index(shape_kind), square])
     checked = 0
-    for _ in range(12):
+    for _ in range(trials):
         vertices, faces = random_solid(rng, solid_kind)
         shape, pieces, radius, deficit = random_shape(rng, shape_kind)
         home, pose = (random_pose(rng, s, square=square) for s in (0.3, 0.9))
         solid, body = moved(home, vertices[faces]), moved(pose, pieces)
         true = triangle_distance(body, solid) - radius
-        if true < 1e-4 or not segments_cross_no_face(body, solid):
+        if true < 1e-4 or surfaces_cross(body, solid):
             continue
         centre = moved(pose, np.zeros(3))
         if winding(centre, solid) > 0.5 or winding(solid[0, 0], body) > 0.5:
@@ -93,7 +78,24 @@ def test_mesh_clearance_is_at_most_brute_force_and_less_by_at_most_the_tolerance
         assert between == pytest.approx(found.distance, abs=1e-9)
         onto = triangle_distance(np.broadcast_to(found.point_on_mesh, (1, 3, 3)), solid)
         assert onto < 1e-9
-    assert checked >= 3
+    return checked
+
+
+@pytest.mark.parametrize("square", [False, True], ids=["turned", "square"])
+@pytest.mark.parametrize("shape_kind", SHAPES)
+@pytest.mark.parametrize("solid_kind", SOLIDS)
+def test_mesh_clearance_is_at_most_brute_force_and_less_by_at_most_the_tolerance(
+    solid_kind, shape_kind, square
+):
+    assert check_against_brute_force(solid_kind, shape_kind, square, 10) >= 2
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("square", [False, True], ids=["turned", "square"])
+@pytest.mark.parametrize("shape_kind", SHAPES)
+@pytest.mark.parametrize("solid_kind", SOLIDS)
+def test_mesh_clearance_holds_against_brute_force_on_many_pairs(solid_kind, shape_kind, square):
+    assert check_against_brute_force(solid_kind, shape_kind, square, 1000) >= 200
 
 
 def winding(point, triangles):

@@ -118,7 +118,6 @@ CASES: tuple[tuple[list[str | int], str, str], ...] = (
     ([*WAYPOINT, "travel"], "[0, 0, 0]", "zero"),
     ([*WAYPOINT, "travel"], "[0, 0, -7]", "parallel"),
     ([*WAYPOINT, "travel"], "null", "3 numbers"),
-    ([*WAYPOINT, "quaternion"], "[1, 0, 0, 0]", "one"),
     ([*WAYPOINT, "role"], '"cut"', "lead-in"),
     ([*WAYPOINT, "role"], "1", "text"),
     ([*WAYPOINT, "events"], '"dwell:1"', "array"),
@@ -234,6 +233,23 @@ def test_what_the_standard_library_refuses_is_refused() -> None:
                 error = refused(text, FILE, NOTHING_STATED)
                 assert error.place is not None
                 assert error.place.key is None
+
+
+@pytest.mark.parametrize("extra", [{"quaternion": [1, 0, 0, 0]}, {"wpr_deg": [0, 0, 0]}])
+def test_a_second_orientation_is_refused(extra: dict[str, Any]) -> None:
+    value = document()
+    value["passes"][0]["waypoints"][1] |= extra
+    error = refused(as_json(value), FILE, NOTHING_STATED)
+    assert error.place is not None
+    assert error.place.key == "passes[0].waypoints[1].normal"
+
+
+def test_a_travel_without_a_normal_is_refused() -> None:
+    value = document()
+    del value["passes"][0]["waypoints"][1]["normal"]
+    error = refused(as_json(value), FILE, NOTHING_STATED)
+    assert error.place is not None
+    assert error.place.key == "passes[0].waypoints[1].travel"
 
 
 def test_missing_members_are_refused() -> None:

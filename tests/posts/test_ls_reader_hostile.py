@@ -60,7 +60,7 @@ def test_a_file_cut_at_any_byte_is_refused_until_its_end_mark_is_whole():
 def test_a_file_whose_middle_is_missing_is_never_taken_for_the_program():
     end = SHARP_DATA.index(b"/END")
     for start in range(SHARP_DATA.index(b"/MN"), end):
-        for length in (1, 2, 9, 60):
+        for length in (1, 9):
             if not SHARP_DATA[start : start + length].strip(b" \t\r\n"):
                 continue
             cut = SHARP_DATA[:start] + SHARP_DATA[start + length :]
@@ -80,7 +80,7 @@ def test_no_changed_digit_letter_or_sign_of_the_program_passes_for_the_program()
 
 def test_random_bytes_in_a_sound_file_never_raise_anything_else():
     rng = random.Random(1)
-    for _ in range(1500):
+    for _ in range(800):
         data = bytearray(DATA)
         for _ in range(rng.randint(1, 3)):
             data[rng.randrange(len(data))] = rng.randrange(256)

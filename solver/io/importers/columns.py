@@ -94,7 +94,8 @@ def columns_from_header(header: Row, file: str) -> Columns:
             raise InputError(_unknown_title(title), place)
         if field in index:
             raise InputError(
-                f"the title {shown(title)} names {field} again, expected it only in column {index[field] + 1}",
+                f"the title {shown(title)} names {field} again, expected it only in column "
+                f"{index[field] + 1}",
                 place,
             )
         index[field] = number

@@ -112,7 +112,7 @@ def _check_motion(motion: Motion) -> None:
     for option in motion.options:
         if _DISPLACED.match(option):
             raise InputError(
-                f"the move may end elsewhere by {shown(option)}, expected moves to the taught positions",
+                f"the move may end elsewhere by {shown(option)}, expected the taught position",
                 motion.place,
             )
 
