@@ -29,7 +29,11 @@ MAXIMUM_NUMBER: Final = 1e9
 MAXIMUM_TEXT: Final = 2_000
 """Longest text that a key may hold [characters]."""
 
+MAXIMUM_PARTS: Final = 100
+"""Most parts of a dotted key."""
+
 _REQUIRED: Final = object()
+_DOT: Final = re.compile(r"[^\s.][ \t]*\.")
 _SYNTAX_PLACE: Final = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)\s*$")
 
 
@@ -44,6 +48,7 @@ def read_toml(path: Path) -> Table:
     """
     text = _read_text(path)
     file = str(path)
+    _refuse_long_keys(text, file)
     try:
         values = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -83,6 +88,16 @@ def _read_text(path: Path) -> str:
         raise InputError(
             "the text is not UTF-8; save the file in UTF-8", Place(str(path), line, column)
         ) from None
+
+
+def _refuse_long_keys(text: str, file: str) -> None:
+    """Refuse keys of very many dotted parts, for which the parser takes quadratic time and space."""
+    for piece in re.finditer(r"[^=,\[\]{}#\n]+", text):
+        if piece[0].count(".") > MAXIMUM_PARTS and len(_DOT.findall(piece[0])) > MAXIMUM_PARTS:
+            line = text.count("\n", 0, piece.start()) + 1
+            raise InputError(
+                f"expected keys of at most {MAXIMUM_PARTS} parts between dots", Place(file, line)
+            )
 
 
 def _syntax_error(error: tomllib.TOMLDecodeError, file: str, text: str) -> InputError:
@@ -171,7 +186,7 @@ class Table:
             return self._values[key]
         if default is _REQUIRED:
             message = f"the key is missing; expected {expected}"
-            spare = [name for name in self._values if name not in self._asked]
+            spare = [name for name in list(self._values)[:200] if name not in self._asked]
             close = difflib.get_close_matches(key, spare, n=1)
             if close:
                 message += f" (found {shown(close[0])} instead)"

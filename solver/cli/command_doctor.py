@@ -8,6 +8,7 @@ from importlib import metadata
 
 from solver.cli.output import emit_json, refused
 from solver.errors import RefusedError
+from solver.units import MM_PER_M
 
 HELP = "show versions and test this installation"
 PACKAGES = (
@@ -23,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Test and print; exit code 4 when a test failed."""
     from solver.catalog import describe
-    from solver.collision.self_test import distance_self_test
+    from solver.collision.fcl_checks import NOT_RELIED_ON, fcl_self_test
 
     versions = {"python": platform.python_version(), "platform": platform.platform()}
     for name in PACKAGES:
@@ -32,15 +33,25 @@ def run(options: argparse.Namespace) -> int:
         except metadata.PackageNotFoundError:
             versions[name] = "not installed"
     shipped = {kind: len(describe(kind)) for kind in ("robots", "beams", "tools", "cells")}
-    tests = distance_self_test()
-    failed = [one.name for one in tests if not one.passed]
+    tests = fcl_self_test()
+    needed = [one for one in tests if not one.name.startswith(NOT_RELIED_ON)]
+    failed = [one.name for one in needed if not one.ok]
     if options.as_json:
         document = {
             "format": "posopt-doctor",
             "version": 1,
             "versions": versions,
             "resources": shipped,
-            "tests": [one._asdict() for one in tests],
+            "tests": [
+                {
+                    "name": one.name,
+                    "expected_mm": one.expected * MM_PER_M,
+                    "found_mm": one.found * MM_PER_M,
+                    "ok": one.ok,
+                    "relied_on": one in needed,
+                }
+                for one in tests
+            ],
             "passed": not failed,
         }
         emit_json(document, options.as_json)
@@ -49,7 +60,8 @@ def run(options: argparse.Namespace) -> int:
             print(f"{name:<20} {version}")
         print("resources            " + ", ".join(f"{n} {kind}" for kind, n in shipped.items()))
         for one in tests:
-            print(one)
+            word = "ok   " if one.ok else "WRONG"
+            print(f"{word} {one.name}: expected {one.expected:.6f} m, found {one.found:.6f} m")
     if failed:
         message = f"the self-test failed: {', '.join(failed)}"
         return refused(options.command, RefusedError(message))

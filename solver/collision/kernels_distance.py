@@ -141,32 +141,6 @@ def _into_world(q, position, p, factor, n, witness, row):
 
 
 @njit(cache=True, nogil=True)
-def _ordered_distance(
-    a,
-    vertices_a,
-    rotation_a,
-    position_a,
-    b,
-    vertices_b,
-    rotation_b,
-    position_b,
-    cutoff,
-    wants_depth,
-    witness,
-    row_a,
-):
-    """Signed distance for kinds in rising order; A's witness goes to row `row_a`."""
-    r, t = _relative(rotation_a, position_a, rotation_b, position_b)
-    radius_a, radius_b = core_radius(a), core_radius(b)
-    gap, n, pa, pb = _core_distance(
-        a, vertices_a, r, t, b, vertices_b, max(cutoff + radius_a + radius_b, 0.0), wants_depth
-    )
-    _into_world(rotation_b, position_b, pa, -radius_a, n, witness, row_a)
-    _into_world(rotation_b, position_b, pb, radius_b, n, witness, 1 - row_a)
-    return gap - radius_a - radius_b
-
-
-@njit(cache=True, nogil=True)
 def numbers_distance(
     a,
     vertices_a,
@@ -181,35 +155,21 @@ def numbers_distance(
     witness,
 ):
     """Signed distance of two bodies given as numbers; see `convex_distance` and `row_distance`."""
+    row_a, row_b = 0, 1
     if a[0] > b[0]:
-        return _ordered_distance(
-            b,
-            vertices_b,
-            rotation_b,
-            position_b,
-            a,
-            vertices_a,
-            rotation_a,
-            position_a,
-            cutoff,
-            wants_depth,
-            witness,
-            1,
-        )
-    return _ordered_distance(
-        a,
-        vertices_a,
-        rotation_a,
-        position_a,
-        b,
-        vertices_b,
-        rotation_b,
-        position_b,
-        cutoff,
-        wants_depth,
-        witness,
-        0,
-    )
+        # the closed forms and the frame of B expect the kinds in rising order
+        a, b = b, a
+        vertices_a, vertices_b = vertices_b, vertices_a
+        rotation_a, rotation_b = rotation_b, rotation_a
+        position_a, position_b = position_b, position_a
+        row_a, row_b = 1, 0
+    r, t = _relative(rotation_a, position_a, rotation_b, position_b)
+    radius_a, radius_b = core_radius(a), core_radius(b)
+    core_cutoff = max(cutoff + radius_a + radius_b, 0.0)
+    gap, n, pa, pb = _core_distance(a, vertices_a, r, t, b, vertices_b, core_cutoff, wants_depth)
+    _into_world(rotation_b, position_b, pa, -radius_a, n, witness, row_a)
+    _into_world(rotation_b, position_b, pb, radius_b, n, witness, row_b)
+    return gap - radius_a - radius_b
 
 
 @njit(cache=True, nogil=True)
@@ -250,6 +210,7 @@ def convex_distance(
         Separated: a lower bound of the distance, at most 1e-6 m below it. Touching or
         overlapping: not positive, minus an upper bound of the depth.
     """
+    everything = math.inf
     return numbers_distance(
         body_numbers(kind_a, size_a, vertices_a.shape[0]),
         vertices_a,
@@ -259,8 +220,8 @@ def convex_distance(
         vertices_b,
         rotation_numbers(rotation_b),
         vector_numbers(position_b),
-        math.inf,
-        True,
+        everything,
+        everything > 0.0,  # a plain bool: a literal True would compile all of this twice
         witness,
     )
 

@@ -83,6 +83,6 @@ def exact(graph: LayeredGraph, monitor: Monitor | None = None) -> ExactResult:
 def _first_path(graph: LayeredGraph, to_go: FloatArray, cost: float) -> IntArray:
     """Return the lexicographically smallest sequence within the tie of the optimum."""
     path = np.empty(graph.layer_count, dtype=np.int64)
-    first_path(*kernel_arrays(graph), metric_of(graph), to_go, cost * (1.0 + TIE), path)
+    first_path(kernel_arrays(graph), metric_of(graph), to_go, cost * (1.0 + TIE), path)
     path.setflags(write=False)
     return path

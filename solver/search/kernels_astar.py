@@ -11,9 +11,11 @@ from solver.search.kernels_layers import (
     EUCLIDEAN,
     ROWS,
     TILE,
+    GraphArrays,
     fill_tile,
     gap_limits,
     relax,
+    step_allowed,
 )
 from solver.transforms import FloatArray, IntArray
 
@@ -124,15 +126,7 @@ def open_starts(
 
 @njit(cache=True, nogil=True)
 def best_first(
-    offsets: IntArray,
-    joints: FloatArray,
-    ranges: FloatArray,
-    node_cost: FloatArray,
-    gap_weight: FloatArray,
-    steps: FloatArray,
-    step_limits: FloatArray,
-    lean: FloatArray,
-    lean_limits: FloatArray,
+    graph: GraphArrays,
     points: FloatArray,
     goals: FloatArray,
     goal_low: int,
@@ -155,10 +149,10 @@ def best_first(
     """
     tile = np.zeros(ROWS * TILE)
     zeros = np.zeros(len(goals))
-    layers = len(offsets) - 1
+    layers = len(graph.offsets) - 1
     widest = 0
     for layer in range(layers):
-        widest = max(widest, offsets[layer + 1] - offsets[layer])
+        widest = max(widest, graph.offsets[layer + 1] - graph.offsets[layer])
     while state[HEAP_SIZE] > 0 and work > 0 and state[HEAP_SIZE] + widest <= len(keys):
         node = pop(keys, nodes, state[HEAP_SIZE])
         state[HEAP_SIZE] -= 1
@@ -171,14 +165,14 @@ def best_first(
         if goal_low <= node < goal_high:
             state[GOAL] = node
             return
-        gap = int(np.searchsorted(offsets, node, side="right")) - 1
+        gap = int(np.searchsorted(graph.offsets, node, side="right")) - 1
         state[DEEPEST] = max(state[DEEPEST], gap)
         if gap + 1 >= layers:
             continue
-        limits = gap_limits(gap, step_limits, lean_limits)
-        weight = gap_weight[gap]
-        start = int(offsets[gap + 1])
-        stop = offsets[gap + 2]
+        limits = gap_limits(gap, graph.step_limits, graph.lean_limits)
+        weight = graph.gap_weight[gap]
+        start = int(graph.offsets[gap + 1])
+        stop = graph.offsets[gap + 2]
         work -= stop - start
         for target in range(start, stop):
             if closed[target]:
@@ -186,18 +180,10 @@ def best_first(
             distance = 0.0
             for joint in range(6):
                 distance += abs(points[target, joint] - points[node, joint])
-            reached = cost[node] + weight * distance + node_cost[target]
+            reached = cost[node] + weight * distance + graph.node_cost[target]
             if reached >= cost[target]:
                 continue
-            allowed = True
-            if len(steps) > 0:
-                for joint in range(6):
-                    if abs(steps[target, joint] - steps[node, joint]) > limits[joint]:
-                        allowed = False
-                        break
-            if len(lean) > 0 and abs(lean[target] - lean[node]) > limits[6]:
-                allowed = False
-            if not allowed:
+            if not step_allowed(graph, limits, node, target):
                 continue
             cost[target] = reached
             parent[target] = node

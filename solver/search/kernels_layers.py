@@ -12,6 +12,8 @@ Two things make it fast, and neither changes a bit of the result:
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
@@ -20,6 +22,7 @@ from solver.transforms import FloatArray, IntArray
 TILE = 32
 FEWEST = 16
 KEYS = 64
+STEP_ROW = 6
 LEAN_ROW = 12
 BEST_ROW = 13
 ROWS = 14
@@ -31,20 +34,80 @@ SQUARED = 1
 EUCLIDEAN = 2
 
 
-@njit(cache=True, nogil=True)
-def group(
-    joints: FloatArray,
-    middle: FloatArray,
-    start: int,
-    stop: int,
-    order: IntArray,
-    first: IntArray,
-    cluster_key: IntArray,
-) -> int:
-    """Sort nodes start..stop-1 by which joints exceed `middle`, and cut them into clusters.
+class GraphArrays(NamedTuple):
+    """A graph for compiled loops: read-only arrays, of length 0 where the graph has none."""
 
-    Writes the nodes to `order`, where each cluster begins to `first` and its key to
-    `cluster_key`; returns the number of clusters. A cluster holds at most a tile; small ones are joined.
+    offsets: IntArray
+    joints: FloatArray
+    ranges: FloatArray
+    node_cost: FloatArray
+    gap_weight: FloatArray
+    steps: FloatArray
+    step_limits: FloatArray
+    lean: FloatArray
+    lean_limits: FloatArray
+
+
+class Clusters(NamedTuple):
+    """Some nodes of a layer in clusters.
+
+    `order` are the nodes, `first` where each cluster begins among them, `key` what its nodes
+    share; `rows` hold normalised joints, steps and lean; `low` and `high` box each cluster.
+    """
+
+    order: IntArray
+    first: IntArray
+    key: IntArray
+    rows: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+
+@njit(cache=True, nogil=True)
+def empty_clusters(size: int) -> Clusters:
+    """Room for the clusters of up to `size` nodes."""
+    most = size // FEWEST + size // TILE + 2
+    return Clusters(
+        np.empty(size, dtype=np.int64),
+        np.zeros(most + 1, dtype=np.int64),
+        np.empty(most, dtype=np.int64),
+        np.zeros((size, LEAN_ROW + 1)),
+        np.zeros((most, LEAN_ROW + 1)),
+        np.zeros((most, LEAN_ROW + 1)),
+    )
+
+
+@njit(cache=True, nogil=True)
+def fill_clusters(graph: GraphArrays, clusters: int, out: Clusters) -> None:
+    """Copy the ordered nodes into rows and box each cluster."""
+    width = 6
+    if len(graph.steps) > 0 or len(graph.lean) > 0:
+        width = LEAN_ROW + 1
+    for cluster in range(clusters):
+        for row in range(width):
+            out.low[cluster, row] = INFINITE
+            out.high[cluster, row] = -INFINITE
+        for i in range(out.first[cluster], out.first[cluster + 1]):
+            node = out.order[i]
+            for joint in range(6):
+                out.rows[i, joint] = graph.joints[node, joint] / graph.ranges[joint]
+            if len(graph.steps) > 0:
+                for joint in range(6):
+                    out.rows[i, STEP_ROW + joint] = graph.steps[node, joint]
+            if len(graph.lean) > 0:
+                out.rows[i, LEAN_ROW] = graph.lean[node]
+            for row in range(width):
+                out.low[cluster, row] = min(out.low[cluster, row], out.rows[i, row])
+                out.high[cluster, row] = max(out.high[cluster, row], out.rows[i, row])
+
+
+@njit(cache=True, nogil=True)
+def cluster_nodes(
+    graph: GraphArrays, middle: FloatArray, start: int, stop: int, out: Clusters
+) -> int:
+    """Sort the nodes start..stop-1 by which joints exceed `middle`, and cut them into clusters.
+
+    A cluster holds at most a tile, small ones are joined; returns the number of clusters.
     """
     counts = np.zeros(KEYS + 1, dtype=np.int64)
     count = stop - start
@@ -52,7 +115,7 @@ def group(
     for i in range(count):
         key = 0
         for joint in range(6):
-            key = 2 * key + (1 if joints[start + i, joint] > middle[joint] else 0)
+            key = 2 * key + (1 if graph.joints[start + i, joint] > middle[joint] else 0)
         keys[i] = key
         counts[key + 1] += 1
     for key in range(KEYS):
@@ -65,50 +128,16 @@ def group(
             continue
         pieces = (end - begin + TILE - 1) // TILE
         for piece in range(pieces):
-            first[clusters] = begin + (end - begin) * piece // pieces
-            cluster_key[clusters] = key
+            out.first[clusters] = begin + (end - begin) * piece // pieces
+            out.key[clusters] = key
             clusters += 1
         begin = end
-    first[clusters] = count
+    out.first[clusters] = count
     for i in range(count):
-        order[counts[keys[i]]] = start + i
+        out.order[counts[keys[i]]] = start + i
         counts[keys[i]] += 1
+    fill_clusters(graph, clusters, out)
     return clusters
-
-
-@njit(cache=True, nogil=True)
-def gather(
-    joints: FloatArray,
-    ranges: FloatArray,
-    steps: FloatArray,
-    lean: FloatArray,
-    order: IntArray,
-    first: IntArray,
-    clusters: int,
-    rows: FloatArray,
-    low: FloatArray,
-    high: FloatArray,
-) -> None:
-    """Copy the ordered nodes into `rows` (normalised joints, steps, lean) and box each cluster."""
-    width = 6
-    if len(steps) > 0 or len(lean) > 0:
-        width = 13
-    for cluster in range(clusters):
-        for row in range(width):
-            low[cluster, row] = INFINITE
-            high[cluster, row] = -INFINITE
-        for i in range(first[cluster], first[cluster + 1]):
-            node = order[i]
-            for joint in range(6):
-                rows[i, joint] = joints[node, joint] / ranges[joint]
-            if len(steps) > 0:
-                for joint in range(6):
-                    rows[i, 6 + joint] = steps[node, joint]
-            if len(lean) > 0:
-                rows[i, LEAN_ROW] = lean[node]
-            for row in range(width):
-                low[cluster, row] = min(low[cluster, row], rows[i, row])
-                high[cluster, row] = max(high[cluster, row], rows[i, row])
 
 
 @njit(cache=True, nogil=True)
@@ -246,11 +275,9 @@ def box_improves(
     value: float,
     weight: float,
     metric: int,
-    low: FloatArray,
-    high: FloatArray,
+    sources: Clusters,
     source: int,
-    other_low: FloatArray,
-    other_high: FloatArray,
+    targets: Clusters,
     target: int,
     worst: float,
 ) -> bool:
@@ -259,8 +286,8 @@ def box_improves(
     for joint in range(6):
         apart = max(
             0.0,
-            low[source, joint] - other_high[target, joint],
-            other_low[target, joint] - high[source, joint],
+            sources.low[source, joint] - targets.high[target, joint],
+            targets.low[target, joint] - sources.high[source, joint],
         )
         d += apart if metric == ABSOLUTE else apart * apart
         if metric != EUCLIDEAN and value + weight * d >= worst:
@@ -270,88 +297,54 @@ def box_improves(
 
 @njit(cache=True, nogil=True)
 def boxes_allow(
-    limits: FloatArray,
-    low: FloatArray,
-    high: FloatArray,
-    source: int,
-    other_low: FloatArray,
-    other_high: FloatArray,
-    target: int,
+    limits: FloatArray, sources: Clusters, source: int, targets: Clusters, target: int
 ) -> bool:
     """Whether some step between two boxes may stay within the limits."""
     for bound in range(7):
-        if limits[bound] == INFINITE:
-            continue
-        row = 6 + bound
-        if low[source, row] - other_high[target, row] > limits[bound]:
-            return False
-        if other_low[target, row] - high[source, row] > limits[bound]:
-            return False
+        if limits[bound] < INFINITE:
+            row = STEP_ROW + bound
+            if sources.low[source, row] - targets.high[target, row] > limits[bound]:
+                return False
+            if targets.low[target, row] - sources.high[source, row] > limits[bound]:
+                return False
     return True
 
 
 @njit(cache=True, nogil=True)
-def relax_clusters(
+def relax_cluster(
     tile: FloatArray,
-    rows: FloatArray,
+    sources: Clusters,
     values: FloatArray,
-    first: IntArray,
-    low: FloatArray,
-    high: FloatArray,
     least: FloatArray,
-    clusters: int,
-    other_rows: FloatArray,
-    other_first: IntArray,
-    other_low: FloatArray,
-    other_high: FloatArray,
+    guess: int,
+    targets: Clusters,
     target: int,
     weight: float,
     metric: int,
-    bounded: bool,
     limits: FloatArray,
-    guess: int,
+    bounded: bool,
 ) -> None:
-    """Fill the tile with a target cluster and relax it from all source clusters that matter.
+    """Fill the tile with a target cluster and relax it from every source cluster that matters.
 
-    The source cluster `guess` comes first: the lower its costs, the more others are skipped.
+    `least` holds the least value of each source cluster. The cluster `guess` comes first: the
+    lower its costs, the more of the others are skipped.
     """
-    begin = other_first[target]
-    count = other_first[target + 1] - begin
-    padded = fill_tile(tile, other_rows, begin, begin + count, 13 if bounded else 6)
+    begin = targets.first[target]
+    count = targets.first[target + 1] - begin
+    width = LEAN_ROW + 1 if bounded else 6
+    padded = fill_tile(tile, targets.rows, begin, begin + count, width)
     worst = INFINITE
-    for turn in range(clusters + 1):
+    for turn in range(len(least) + 1):
         source = guess if turn == 0 else turn - 1
         if least[source] >= worst or (turn > 0 and source == guess):
             continue
-        if not box_improves(
-            least[source],
-            weight,
-            metric,
-            low,
-            high,
-            source,
-            other_low,
-            other_high,
-            target,
-            worst,
-        ):
+        if not box_improves(least[source], weight, metric, sources, source, targets, target, worst):
             continue
-        if bounded and not boxes_allow(limits, low, high, source, other_low, other_high, target):
-            continue
-        if bounded:
-            relax_bounded(
-                tile,
-                padded,
-                rows,
-                values,
-                first[source],
-                first[source + 1],
-                weight,
-                metric,
-                limits,
-            )
-        else:
-            relax(tile, padded, rows, values, first[source], first[source + 1], weight, metric)
+        low, high = sources.first[source], sources.first[source + 1]
+        if not bounded:
+            relax(tile, padded, sources.rows, values, low, high, weight, metric)
+        elif boxes_allow(limits, sources, source, targets, target):
+            relax_bounded(tile, padded, sources.rows, values, low, high, weight, metric, limits)
         worst = -INFINITE
         for j in range(count):
             worst = max(worst, tile[BEST_ROW * TILE + j])
@@ -359,15 +352,7 @@ def relax_clusters(
 
 @njit(cache=True, nogil=True)
 def sweep(
-    offsets: IntArray,
-    joints: FloatArray,
-    ranges: FloatArray,
-    node_cost: FloatArray,
-    gap_weight: FloatArray,
-    steps: FloatArray,
-    step_limits: FloatArray,
-    lean: FloatArray,
-    lean_limits: FloatArray,
+    graph: GraphArrays,
     middle: FloatArray,
     metric: int,
     forward: bool,
@@ -384,118 +369,66 @@ def sweep(
     (node cost + value) + edge. `widest` takes the larger of node cost and value instead of
     the sum. piece_low..piece_high-1 are the targets to do, counted within their layer.
     """
+    offsets = graph.offsets
     size = 0
     for index in range(gap_count):
         gap = gap_first + index if forward else gap_first - index
         size = max(size, offsets[gap + 1] - offsets[gap], offsets[gap + 2] - offsets[gap + 1])
-    most = size // FEWEST + size // TILE + 2
     tile = np.zeros(ROWS * TILE)
-    key = np.empty((2, most), dtype=np.int64)
-    least = np.empty(most)
-    source_values = np.empty(size)
-    order = np.empty((2, size), dtype=np.int64)
-    first = np.zeros((2, most + 1), dtype=np.int64)
-    rows = np.zeros((2, size, 13))
-    low = np.zeros((2, most, 13))
-    high = np.zeros((2, most, 13))
-    clusters = 0
-    side = 0
+    sources, targets = empty_clusters(size), empty_clusters(size)
+    source_values, least = np.empty(size), np.empty(len(sources.key))
+    layer = gap_first if forward else gap_first + 1
+    source_count = cluster_nodes(graph, middle, offsets[layer], offsets[layer + 1], sources)
     for index in range(gap_count):
         gap = gap_first + index if forward else gap_first - index
-        source_layer = gap if forward else gap + 1
-        target_layer = gap + 1 if forward else gap
-        limits = gap_limits(gap, step_limits, lean_limits)
-        bounded = False
-        for bound in range(7):
-            bounded = bounded or limits[bound] < INFINITE
-        if index == 0:
-            clusters = group(
-                joints,
-                middle,
-                offsets[source_layer],
-                offsets[source_layer + 1],
-                order[side],
-                first[side],
-                key[side],
-            )
-            gather(
-                joints,
-                ranges,
-                steps,
-                lean,
-                order[side],
-                first[side],
-                clusters,
-                rows[side],
-                low[side],
-                high[side],
-            )
-        other = 1 - side
-        begin = offsets[target_layer] + piece_low
-        end = min(offsets[target_layer] + piece_high, offsets[target_layer + 1])
-        targets = group(joints, middle, begin, end, order[other], first[other], key[other])
-        gather(
-            joints,
-            ranges,
-            steps,
-            lean,
-            order[other],
-            first[other],
-            targets,
-            rows[other],
-            low[other],
-            high[other],
-        )
-        for cluster in range(clusters):
+        layer = gap + 1 if forward else gap
+        begin = offsets[layer] + piece_low
+        end = min(offsets[layer] + piece_high, offsets[layer + 1])
+        target_count = cluster_nodes(graph, middle, begin, end, targets)
+        for cluster in range(source_count):
             least[cluster] = INFINITE
-            for i in range(first[side, cluster], first[side, cluster + 1]):
-                node = order[side, i]
-                value = values[node] if forward else values[node] + node_cost[node]
+            for i in range(sources.first[cluster], sources.first[cluster + 1]):
+                node = sources.order[i]
+                value = values[node] if forward else values[node] + graph.node_cost[node]
                 source_values[i] = value
                 least[cluster] = min(least[cluster], value)
+        limits = gap_limits(gap, graph.step_limits, graph.lean_limits)
+        bounded = limits.min() < INFINITE
         guess = 0
-        if clusters == 0:
-            for node in range(begin, end):
-                values[node] = INFINITE
-        for target in range(targets if clusters > 0 else 0):
-            while guess + 1 < clusters and key[side, guess + 1] <= key[other, target]:
+        for target in range(target_count):
+            for j in range(TILE):
+                tile[BEST_ROW * TILE + j] = INFINITE
+            while guess + 1 < source_count and sources.key[guess + 1] <= targets.key[target]:
                 guess += 1
-            relax_clusters(
-                tile,
-                rows[side],
-                source_values,
-                first[side],
-                low[side],
-                high[side],
-                least,
-                clusters,
-                rows[other],
-                first[other],
-                low[other],
-                high[other],
-                target,
-                gap_weight[gap],
-                metric,
-                bounded,
-                limits,
-                guess,
-            )
-            for i in range(first[other, target], first[other, target + 1]):
-                node = order[other, i]
-                best = tile[BEST_ROW * TILE + i - first[other, target]]
+            if source_count > 0:
+                relax_cluster(
+                    tile,
+                    sources,
+                    source_values,
+                    least[:source_count],
+                    guess,
+                    targets,
+                    target,
+                    graph.gap_weight[gap],
+                    metric,
+                    limits,
+                    bounded,
+                )
+            for i in range(targets.first[target], targets.first[target + 1]):
+                node = targets.order[i]
+                best = tile[BEST_ROW * TILE + i - targets.first[target]]
                 if widest:
-                    values[node] = max(best, node_cost[node])
+                    values[node] = max(best, graph.node_cost[node])
                 else:
-                    values[node] = best + node_cost[node] if forward else best
-        clusters = targets
-        side = other
+                    values[node] = best + graph.node_cost[node] if forward else best
+        sources, targets = targets, sources
+        source_count = target_count
 
 
 @njit(cache=True, nogil=True)
-def step_allowed(
-    steps: FloatArray, lean: FloatArray, limits: FloatArray, source: int, target: int
-) -> bool:
+def step_allowed(graph: GraphArrays, limits: FloatArray, source: int, target: int) -> bool:
     """Whether the steps between two nodes stay within the limits."""
+    steps, lean = graph.steps, graph.lean
     if len(steps) > 0:
         for joint in range(6):
             if abs(steps[target, joint] - steps[source, joint]) > limits[joint]:
@@ -505,15 +438,7 @@ def step_allowed(
 
 @njit(cache=True, nogil=True)
 def first_path(
-    offsets: IntArray,
-    joints: FloatArray,
-    ranges: FloatArray,
-    node_cost: FloatArray,
-    gap_weight: FloatArray,
-    steps: FloatArray,
-    step_limits: FloatArray,
-    lean: FloatArray,
-    lean_limits: FloatArray,
+    graph: GraphArrays,
     metric: int,
     to_go: FloatArray,
     threshold: float,
@@ -527,31 +452,31 @@ def first_path(
     limits = np.full(7, INFINITE)
     point = np.zeros(6)
     for layer in range(len(path)):
-        start = offsets[layer]
-        stop = offsets[layer + 1]
+        start = graph.offsets[layer]
+        stop = graph.offsets[layer + 1]
         weight = 0.0
         before = 0
         if layer > 0:
             before = path[layer - 1]
-            weight = gap_weight[layer - 1]
-            limits = gap_limits(layer - 1, step_limits, lean_limits)
+            weight = graph.gap_weight[layer - 1]
+            limits = gap_limits(layer - 1, graph.step_limits, graph.lean_limits)
             for joint in range(6):
-                point[joint] = joints[before, joint] / ranges[joint]
+                point[joint] = graph.joints[before, joint] / graph.ranges[joint]
         chosen = -1
         chosen_cost = INFINITE
         least = INFINITE
         for node in range(start, stop):
-            reached = spent + node_cost[node]
+            reached = spent + graph.node_cost[node]
             if layer > 0:
                 d = 0.0
                 for joint in range(6):
-                    change = joints[node, joint] / ranges[joint] - point[joint]
+                    change = graph.joints[node, joint] / graph.ranges[joint] - point[joint]
                     d += abs(change) if metric == ABSOLUTE else change * change
                     # Partial sums only grow: a node that is over already cannot be chosen.
-                    reached = (spent + weight * d) + node_cost[node]
+                    reached = (spent + weight * d) + graph.node_cost[node]
                     if reached + to_go[node] >= least and reached + to_go[node] > threshold:
                         break
-                if not step_allowed(steps, lean, limits, before, node):
+                if not step_allowed(graph, limits, before, node):
                     continue
             total = reached + to_go[node]
             if total <= threshold:

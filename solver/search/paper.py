@@ -182,7 +182,7 @@ class _BestFirst:
             return True
         self._make_room(self._widest)
         best_first(
-            *kernel_arrays(self._graph),
+            kernel_arrays(self._graph),
             self._points,
             self._points[self._goals],
             self._goals.start,

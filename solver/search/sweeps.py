@@ -9,8 +9,8 @@ import numpy as np
 
 from solver.progress import Monitor, checkpoint
 from solver.search.graph import JOINTS, LayeredGraph
-from solver.search.kernels_layers import ABSOLUTE, EUCLIDEAN, SQUARED, sweep
-from solver.transforms import FloatArray, IntArray
+from solver.search.kernels_layers import ABSOLUTE, EUCLIDEAN, SQUARED, GraphArrays, sweep
+from solver.transforms import FloatArray
 
 STAGE = "search"
 
@@ -112,7 +112,7 @@ def carry(
     arrays, middle = kernel_arrays(graph, node_cost, gap_weight), _middle(graph)
     for piece in pieces(graph, first, last, forward):
         sweep(
-            *arrays,
+            arrays,
             middle,
             metric_of(graph) if metric is None else metric,
             forward,
@@ -135,25 +135,11 @@ def _middle(graph: LayeredGraph) -> FloatArray:
     return middle
 
 
-class KernelArrays(NamedTuple):
-    """A graph as the compiled loops take it: all arrays read-only, empty where there are none."""
-
-    offsets: IntArray
-    joints: FloatArray
-    ranges: FloatArray
-    node_cost: FloatArray
-    gap_weight: FloatArray
-    steps: FloatArray
-    step_limits: FloatArray
-    lean: FloatArray
-    lean_limits: FloatArray
-
-
 def kernel_arrays(
     graph: LayeredGraph, node_cost: FloatArray | None = None, gap_weight: FloatArray | None = None
-) -> KernelArrays:
+) -> GraphArrays:
     """Return the arrays of a graph; `node_cost` and `gap_weight` replace its own."""
-    return KernelArrays(
+    return GraphArrays(
         graph.offsets,
         graph.joints,
         graph.ranges,

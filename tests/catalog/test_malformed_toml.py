@@ -172,6 +172,10 @@ UNREADABLE = {
     "deep lists": b"a = " + b"[" * 100_000,
     "deep tables": b"a = " + b"{b = " * 20_000,
     "many digits": b"a = " + b"9" * 10_000,
+    "dotted key": b"a" + b".a" * 200_000 + b" = 1",
+    "dotted table": b"[" + b"a ." * 200_000 + b"a]",
+    "dotted inline": b"a = {" + b"'a'." * 200_000 + b"a = 1}",
+    "many keys": b"".join(b"k%d = 1\n" % i for i in range(20_000)),
     "too large": b"#" + b" " * MAXIMUM_BYTES,
 }
 
