@@ -73,9 +73,7 @@ def _other_angles_nominal(result: PlanningResult) -> np.ndarray:
     number = problem.toolpath.pass_index[nodes.candidate[:, 0]]
     lead_off = np.abs(angles[:, 1] - lead[number])
     best_lead, best_spin = lead_off.min(), np.abs(angles[:, 2]).min()
-    keep: np.ndarray = (lead_off <= best_lead + 1e-9) & (
-        np.abs(angles[:, 2]) <= best_spin + 1e-9
-    )
+    keep: np.ndarray = (lead_off <= best_lead + 1e-9) & (np.abs(angles[:, 2]) <= best_spin + 1e-9)
     return keep
 
 
@@ -83,9 +81,7 @@ def nominal_lean(result: PlanningResult) -> Reference:
     """The cheapest sequence that holds every pass's nominal lean (the grid's nearest)."""
     problem, nodes = result.problem, result.candidates.nodes
     grid = problem.settings.lean.angles()
-    on_grid = np.array(
-        [grid[np.abs(grid - one.lean).argmin()] for one in problem.toolpath.passes]
-    )
+    on_grid = np.array([grid[np.abs(grid - one.lean).argmin()] for one in problem.toolpath.passes])
     nearest = on_grid[problem.toolpath.pass_index[nodes.candidate[:, 0]]]
     allowed = np.isclose(result.candidates.lean, nearest, atol=1e-9, rtol=0.0)
     found = _restricted(result, allowed & _other_angles_nominal(result))

@@ -83,10 +83,12 @@ def _schemes(result: PlanningResult) -> str:
     rows = [["", *(one.scheme.value for one in chosen)]]
     rows.append(["joint cost", *(f"{one.joint_cost:.5f}" for one in chosen)])
     rows.append(["objective", *(f"{one.cost:.5f}" for one in chosen)])
-    rows.append(["least clearance, mm", *(f"{rounded_down(one.least_clearance):.1f}" for one in chosen)])
-    rows.append(["mean clearance, mm", *(f"{rounded_down(one.mean_clearance):.1f}" for one in chosen)])
+    rows.append(["least clearance, mm", *(_shown(one.least_clearance) for one in chosen)])
+    rows.append(["mean clearance, mm", *(_shown(one.mean_clearance) for one in chosen)])
     rows.append(["lean, deg", *(_range(one.angles[:, 0]) for one in chosen)])
-    rows.append(["branches", *(",".join(map(str, sorted(set(one.branch.tolist())))) for one in chosen)])
+    rows.append(
+        ["branches", *(",".join(map(str, sorted(set(one.branch.tolist())))) for one in chosen)]
+    )
     rows.append(["expanded nodes", *(f"{one.expanded}" if one.expanded else "-" for one in chosen)])
     text = "Schemes\n" + table(rows)
     if not result.clearance_met:
@@ -98,6 +100,14 @@ def _schemes(result: PlanningResult) -> str:
             else f"\n  The safety distance of {asked:g} mm is not kept by {result.scheme.value}"
         )
     return text
+
+
+def _shown(clearance: float) -> str:
+    return f"{rounded_down(clearance):.1f}"
+
+
+def _branches(sequence: Sequence) -> str:
+    return ",".join(map(str, sorted(set(sequence.branch.tolist()))))
 
 
 def _range(angles: FloatArray) -> str:
@@ -154,8 +164,8 @@ def _references(result: PlanningResult, compared: tuple[Reference, ...]) -> str:
             [
                 name,
                 f"{one.joint_cost:.5f}",
-                f"{rounded_down(one.least_clearance):.1f}",
-                f"{rounded_down(one.mean_clearance):.1f}",
+                _shown(one.least_clearance),
+                _shown(one.mean_clearance),
                 "kept" if one.keeps_clearance else "not kept",
             ]
         )
@@ -253,9 +263,7 @@ def _reference_document(result: PlanningResult, one: Reference) -> dict[str, Any
 
 def _waypoints_document(result: PlanningResult) -> list[dict[str, Any]]:
     problem, sequence, scene = result.problem, result.sequence, result.candidates.scene
-    found = check_postures(
-        problem.robot, scene, sequence.pendant, touch_numbers(problem, scene)
-    )
+    found = check_postures(problem.robot, scene, sequence.pendant, touch_numbers(problem, scene))
     limits = problem.joint_limits
     slack = np.minimum(sequence.pendant - limits[:, 0], limits[:, 1] - sequence.pendant)
     world = problem.waypoint_poses

@@ -15,6 +15,8 @@ Joints = Sequence[float]
 
 
 class PlainResult(NamedTuple):
+    """Nodes of the path, its cost, and the number of closed nodes."""
+
     path: list[int]
     cost: float
     expanded: int
@@ -31,7 +33,7 @@ def plain_astar(
     `layers` holds the joints of every node of every layer [rad]; scheme f1 has node costs 0,
     scheme f2 the safety penalty.
     """
-    points = []
+    points: list[list[float]] = []
     costs = []
     layer_of = []
     first_of = []
@@ -47,15 +49,15 @@ def plain_astar(
 
     heuristic = {}
 
-    def estimate(node):
+    def estimate(node: int) -> float:
         if node not in heuristic:
             heuristic[node] = weight * min(math.dist(points[node], goal) for goal in goals)
         return heuristic[node]
 
     best = {}
-    parent = {}
+    parent: dict[int, int] = {}
     closed = set()
-    heap = []
+    heap: list[tuple[float, int]] = []
     if goals:
         for node in range(first_of[1]):
             best[node] = costs[node]

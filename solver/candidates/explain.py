@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.candidates.generate import reference_from_wrist, touch_numbers
+from solver.candidates.margins import FilterMargin, pair_margin
 from solver.candidates.meshes import MeshChecker
 from solver.candidates.outcomes import Outcome
 from solver.collision.kernels_scene import all_distances, pair_threshold
@@ -24,22 +25,6 @@ from solver.model.problem import PlanningProblem
 from solver.model.settings import BRANCHES, Turns
 from solver.transforms import FloatArray
 from solver.units import DEG_PER_RAD, MM_PER_M, TURN
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class FilterMargin:
-    """One filter's verdict: `margin` is positive when passed, in `unit`; nan when not defined.
-
-    `subject` names the joint or the two bodies; `points` (2, 3) are their nearest points in
-    fanuc_world [m] where there are bodies.
-    """
-
-    filter: Outcome
-    passed: bool
-    margin: float
-    unit: str
-    subject: str = ""
-    points: FloatArray | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,9 +85,7 @@ def explain(
     )
 
 
-def _reach(
-    problem: PlanningProblem, wrist: FloatArray, branch: int, found: bool
-) -> FilterMargin:
+def _reach(problem: PlanningProblem, wrist: FloatArray, branch: int, found: bool) -> FilterMargin:
     """How far the wrist centre is inside the shell that shoulder and forearm can reach [mm]."""
     a1, a2, a3, d4 = problem.robot.arm_lengths
     radius = math.hypot(wrist[0], wrist[1])
@@ -148,9 +131,7 @@ def _limits(problem: PlanningProblem, joints: FloatArray) -> list[FilterMargin]:
 
 
 def _angle_margin(slack: float, subject: str) -> FilterMargin:
-    return FilterMargin(
-        Outcome.JOINT_LIMIT, slack >= -1e-12, slack * DEG_PER_RAD, "deg", subject
-    )
+    return FilterMargin(Outcome.JOINT_LIMIT, slack >= -1e-12, slack * DEG_PER_RAD, "deg", subject)
 
 
 def _singularity(problem: PlanningProblem, arm: FloatArray, model: FloatArray) -> FilterMargin:
@@ -175,9 +156,7 @@ def collision_margins(
     frames = np.empty((7, 3, 4))
     forward_frames(arm, model, frames)
     rotations, positions = np.empty((bodies, 3, 3)), np.empty((bodies, 3))
-    all_distances(
-        packed, frames, rotations, positions, fixed, among, fixed_points, among_points
-    )
+    all_distances(packed, frames, rotations, positions, fixed, among, fixed_points, among_points)
     rows = []
     counted = np.where(packed.rule == CLEARANCE, fixed, np.inf)
     near = np.full(fixed.shape, np.inf)
@@ -187,19 +166,14 @@ def collision_margins(
         if table.size and np.isfinite(table).any():
             m, f = np.unravel_index(int(np.argmin(table)), table.shape)
             subject = f"{scene.moving[m]} and {scene.fixed[f]}"
-            rows.append(_pair(outcome, float(table[m, f]), subject, fixed_points[m, f]))
+            rows.append(pair_margin(outcome, float(table[m, f]), subject, fixed_points[m, f]))
     clearance = float(counted.min()) if counted.size else math.inf
     if pairs:
         p = int(np.argmin(among))
         a, b = packed.self_pairs[p]
         subject = f"{scene.moving[a]} and {scene.moving[b]}"
         margin = float(among[p]) - packed.self_margin
-        rows.append(_pair(Outcome.SELF_COLLISION, margin, subject, among_points[p]))
+        rows.append(pair_margin(Outcome.SELF_COLLISION, margin, subject, among_points[p]))
     if scene.meshes:
-        clearance, rows = MeshChecker(scene).merge_margins(arm, model, touch, clearance, rows, _pair)
+        clearance, rows = MeshChecker(scene).merge_margins(arm, model, touch, clearance, rows)
     return clearance, rows
-
-
-def _pair(outcome: Outcome, margin: float, subject: str, points: FloatArray) -> FilterMargin:
-    return FilterMargin(outcome, margin > 0.0, margin * MM_PER_M, "mm", subject, points.copy())
-

@@ -98,7 +98,8 @@ def orientations(settings: PlanningSettings) -> FloatArray:
     grid = np.meshgrid(
         settings.lean.angles(), settings.lead.angles(), settings.spin.angles(), indexing="ij"
     )
-    return np.column_stack([axis.ravel() for axis in grid])
+    angles: FloatArray = np.column_stack([axis.ravel() for axis in grid])
+    return angles
 
 
 def tool_rotation(lean: float, lead: float, spin: float) -> FloatArray:
@@ -172,9 +173,7 @@ def generate(problem: PlanningProblem, monitor: Monitor | None = None) -> Candid
     nodes = _expand(problem, joints, outcome, turns, clearance, monitor)
     for array in (joints, outcome, turns, clearance):
         array.setflags(write=False)
-    return CandidateSet(
-        problem, scene, angles, branches, joints, outcome, turns, clearance, nodes
-    )
+    return CandidateSet(problem, scene, angles, branches, joints, outcome, turns, clearance, nodes)
 
 
 def _expand(

@@ -135,16 +135,32 @@ def evaluate_poses(
                 frames[6] = wrist
                 place_bodies(scene, scene.tool, bodies, frames, rotations, positions)
                 tool_status, tool_clearance = check_bodies(
-                    scene, scene.tool, bodies, touch[n], np.inf,
-                    rotations, positions, witness, nearest, points,
+                    scene,
+                    scene.tool,
+                    bodies,
+                    touch[n],
+                    np.inf,
+                    rotations,
+                    positions,
+                    witness,
+                    nearest,
+                    points,
                 )
             status, d = tool_status, tool_clearance
             if status == FREE:
                 forward_frames(arm, solved[branch], frames)
                 place_bodies(scene, 0, scene.tool, frames, rotations, positions)
                 status, d = check_bodies(
-                    scene, 0, scene.tool, touch[n], tool_clearance,
-                    rotations, positions, witness, nearest, points,
+                    scene,
+                    0,
+                    scene.tool,
+                    touch[n],
+                    tool_clearance,
+                    rotations,
+                    positions,
+                    witness,
+                    nearest,
+                    points,
                 )
             if status == FREE:
                 status = check_self(scene, rotations, positions, witness)

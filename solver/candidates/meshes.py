@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.candidates.margins import FilterMargin, pair_margin
 from solver.candidates.outcomes import Outcome
 from solver.collision.kernels_scene import FREE, HIT, MARGIN_BROKEN
 from solver.collision.scene import CLEARANCE, CONTACT, CollisionScene, MeshRule
@@ -24,9 +23,7 @@ class MeshChecker:
 
         self._scene = scene
         self._bound, self._measure = mesh_distance.lower_bound, mesh_distance.mesh_clearance
-        self._obstacles = [
-            mesh_distance.MeshObstacle(mesh, pose) for _, mesh, pose in scene.meshes
-        ]
+        self._obstacles = [mesh_distance.MeshObstacle(mesh, pose) for _, mesh, pose in scene.meshes]
         self._proxies = [mesh_proxy.ConvexProxy(shape) for shape in scene.shapes]
 
     def apply(
@@ -42,7 +39,9 @@ class MeshChecker:
         rows = np.argwhere(outcome == Outcome.FEASIBLE)
         for done, (n, o, b) in enumerate(rows):
             checkpoint(monitor, "meshes", done, len(rows))
-            status, least, _, _ = self.check(arm, joints[n, o, b], int(touch[n]), clearance[n, o, b])
+            status, least, _, _ = self.check(
+                arm, joints[n, o, b], int(touch[n]), clearance[n, o, b]
+            )
             clearance[n, o, b] = least
             if status != FREE:
                 outcome[n, o, b] = Outcome.COLLISION if status == HIT else Outcome.MARGIN
@@ -99,22 +98,23 @@ class MeshChecker:
         model: FloatArray,
         touch: int,
         clearance: float,
-        rows: list,  # type: ignore[type-arg]
-        make: Callable,  # type: ignore[type-arg]
-    ) -> tuple[float, list]:  # type: ignore[type-arg]
+        rows: list[FilterMargin],
+    ) -> tuple[float, list[FilterMargin]]:
         """Add the meshes' tightest pairs to the margins of an explanation."""
         frames = np.empty((7, 3, 4))
         forward_frames(arm, model, frames)
+        found_rows = list(rows)
         for rule in self._scene.mesh_rules:
             pose = self._pose(frames, rule.row)
             found = self._measure(self._proxies[rule.row], pose, self._obstacles[rule.mesh])
             kind = Outcome.COLLISION if rule.counts else Outcome.MARGIN
             margin = found.distance - (0.0 if rule.counts else self._least(rule, touch))
-            rows.append(make(kind, margin, " and ".join(self._names(rule)), _points(found)))
+            names = " and ".join(self._names(rule))
+            found_rows.append(pair_margin(kind, margin, names, _points(found)))
             if rule.counts:
                 clearance = min(clearance, found.distance)
-        tightest = {}
-        for one in rows:
+        tightest: dict[Outcome, FilterMargin] = {}
+        for one in found_rows:
             if one.filter not in tightest or one.margin < tightest[one.filter].margin:
                 tightest[one.filter] = one
         return clearance, [tightest[kind] for kind in sorted(tightest)]

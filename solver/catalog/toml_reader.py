@@ -91,7 +91,7 @@ def _read_text(path: Path) -> str:
 
 
 def _refuse_long_keys(text: str, file: str) -> None:
-    """Refuse keys of very many dotted parts, for which the parser takes quadratic time and space."""
+    """Refuse keys of very many dotted parts: the parser takes quadratic time and space."""
     for piece in re.finditer(r"[^=,\[\]{}#\n]+", text):
         if piece[0].count(".") > MAXIMUM_PARTS and len(_DOT.findall(piece[0])) > MAXIMUM_PARTS:
             line = text.count("\n", 0, piece.start()) + 1

@@ -13,10 +13,16 @@ HELP = "measure planning on the shipped cells, and the search against a plain Py
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of this command."""
-    parser.add_argument("--repeats", type=int, default=9, metavar="N",
-                        help="runs of each measurement; the median counts (default 9)")
-    parser.add_argument("--long", action="store_true",
-                        help="also plan both cells with 5,000 waypoints")
+    parser.add_argument(
+        "--repeats",
+        type=int,
+        default=9,
+        metavar="N",
+        help="runs of each measurement; the median counts (default 9)",
+    )
+    parser.add_argument(
+        "--long", action="store_true", help="also plan both cells with 5,000 waypoints"
+    )
 
 
 def run(options: argparse.Namespace) -> int:

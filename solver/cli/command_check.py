@@ -14,8 +14,11 @@ HELP = "check a program against its cell, on the nominal model"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of this command."""
     parser.add_argument("program", metavar="PROGRAM.LS", help="the program to check")
-    parser.add_argument("--cell", metavar="CELL",
-                        help="name or TOML file of the cell (default: the one in its remarks)")
+    parser.add_argument(
+        "--cell",
+        metavar="CELL",
+        help="name or TOML file of the cell (default: the one in its remarks)",
+    )
     parser.add_argument("--beam", metavar="NAME", help="the beam, where it is not the cell's")
     parser.add_argument("--path", metavar="F", help="the path file, where it is not the cell's")
 

@@ -66,7 +66,9 @@ def _read(file: str) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         raise InputError("the file is not UTF-8 text", Place(file)) from error
     except json.JSONDecodeError as error:
-        raise InputError(f"not JSON: {error.msg}", Place(file, error.lineno, error.colno)) from error
+        raise InputError(
+            f"not JSON: {error.msg}", Place(file, error.lineno, error.colno)
+        ) from error
     except RecursionError as error:
         raise InputError("the JSON is nested too deeply", Place(file)) from error
     if not isinstance(document, dict):

@@ -12,7 +12,13 @@ from solver.units import MM_PER_M
 
 HELP = "show versions and test this installation"
 PACKAGES = (
-    "posopt", "numpy", "numba", "python-fcl", "trimesh", "PySide6-Essentials", "pyqtgraph",
+    "posopt",
+    "numpy",
+    "numba",
+    "python-fcl",
+    "trimesh",
+    "PySide6-Essentials",
+    "pyqtgraph",
     "PyOpenGL",
 )
 

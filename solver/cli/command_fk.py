@@ -36,8 +36,10 @@ def run(options: argparse.Namespace) -> int:
         if options.csv
         else np.array([six_numbers(options.joints, "--joints")])
     )
-    tool = None if options.tool is None else pose_from_xyzwpr(
-        np.array(six_numbers(options.tool, "--tool"))
+    tool = (
+        None
+        if options.tool is None
+        else pose_from_xyzwpr(np.array(six_numbers(options.tool, "--tool")))
     )
     joints = rows * DEG
     poses = forward(robot, joints, tool)
@@ -46,13 +48,19 @@ def run(options: argparse.Namespace) -> int:
         for row, pose, angles in zip(rows, poses, joints, strict=True)
     ]
     if options.as_json:
-        emit_json({"format": "posopt-fk", "version": 1, "robot": robot.name, "results": results},
-                  options.as_json)
+        emit_json(
+            {"format": "posopt-fk", "version": 1, "robot": robot.name, "results": results},
+            options.as_json,
+        )
     if options.as_json != "-":
         for one in results:
             values = one["pose"]
-            print("X {:.4f}  Y {:.4f}  Z {:.4f} mm  W {:.4f}  P {:.4f}  R {:.4f} deg  ".format(*values)
-                  + str(one["config"]))
+            print(
+                "X {:.4f}  Y {:.4f}  Z {:.4f} mm  W {:.4f}  P {:.4f}  R {:.4f} deg  ".format(
+                    *values
+                )
+                + str(one["config"])
+            )
     return 0
 
 

@@ -34,8 +34,10 @@ def run(options: argparse.Namespace) -> int:
     rows = (
         read_rows(options.csv) if options.csv else np.array([six_numbers(options.pose, "--pose")])
     )
-    tool = None if options.tool is None else pose_from_xyzwpr(
-        np.array(six_numbers(options.tool, "--tool"))
+    tool = (
+        None
+        if options.tool is None
+        else pose_from_xyzwpr(np.array(six_numbers(options.tool, "--tool")))
     )
     results = []
     for row in rows:
@@ -52,8 +54,10 @@ def run(options: argparse.Namespace) -> int:
             }
         )
     if options.as_json:
-        emit_json({"format": "posopt-ik", "version": 1, "robot": robot.name, "results": results},
-                  options.as_json)
+        emit_json(
+            {"format": "posopt-ik", "version": 1, "robot": robot.name, "results": results},
+            options.as_json,
+        )
     if options.as_json != "-":
         _print(results)
     return 0 if all(one["solutions"] for one in results) else NO_SOLUTION

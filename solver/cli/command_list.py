@@ -22,8 +22,10 @@ def run(options: argparse.Namespace) -> int:
     entries = describe(options.kind)
     if options.as_json:
         rows = [{"name": entry.name, "title": entry.title} for entry in entries]
-        emit_json({"format": "posopt-list", "version": 1, "kind": options.kind, "entries": rows},
-                  options.as_json)
+        emit_json(
+            {"format": "posopt-list", "version": 1, "kind": options.kind, "entries": rows},
+            options.as_json,
+        )
     if options.as_json != "-":
         width = max(len(entry.name) for entry in entries)
         for entry in entries:

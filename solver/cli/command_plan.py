@@ -20,20 +20,30 @@ DEFAULT_CELL = "groove_hw300"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of this command."""
     parser.add_argument(
-        "cell", nargs="?", default=DEFAULT_CELL, metavar="CELL",
+        "cell",
+        nargs="?",
+        default=DEFAULT_CELL,
+        metavar="CELL",
         help=f"name or TOML file of a cell (default {DEFAULT_CELL})",
     )
     parser.add_argument("--path", metavar="F", help="another path file for the cell")
     parser.add_argument("--beam", metavar="NAME", help="another beam, such as HW250 or HEA200")
     parser.add_argument(
-        "--scheme", choices=[scheme.value for scheme in Scheme],
+        "--scheme",
+        choices=[scheme.value for scheme in Scheme],
         help="exact (proven optimum), or f, f1, f2 of the paper (default: the cell's)",
     )
-    parser.add_argument("--out", metavar="NAME.LS", help="where the program is written "
-                        "(default: the cell's program name in this folder)")
+    parser.add_argument(
+        "--out",
+        metavar="NAME.LS",
+        help="where the program is written (default: the cell's program name in this folder)",
+    )
     parser.add_argument("--no-program", action="store_true", help="plan only, write no program")
-    parser.add_argument("--accept-clearance", metavar="MM",
-                        help="accept this least clearance where the safety distance cannot be met")
+    parser.add_argument(
+        "--accept-clearance",
+        metavar="MM",
+        help="accept this least clearance where the safety distance cannot be met",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -75,6 +85,8 @@ def run(options: argparse.Namespace) -> int:
     if refusal is not None:
         return refused(options.command, refusal)
     if written is not None and options.as_json != "-":
-        print(f"wrote {written.path}: {len(written.checks)} checks passed after reading it back "
-              "(nominal model; verify in T1)")
+        print(
+            f"wrote {written.path}: {len(written.checks)} checks passed after reading it back "
+            "(nominal model; verify in T1)"
+        )
     return 0

@@ -30,8 +30,15 @@ def build_parser() -> argparse.ArgumentParser:
     for name in COMMANDS:
         module = import_module(f"solver.cli.command_{name}")
         sub = commands.add_parser(name, help=module.HELP, description=module.HELP)
-        sub.add_argument("--json", dest="as_json", nargs="?", const="-", default=None, metavar="F",
-                         help="write the result as JSON to the file F, or to the screen")
+        sub.add_argument(
+            "--json",
+            dest="as_json",
+            nargs="?",
+            const="-",
+            default=None,
+            metavar="F",
+            help="write the result as JSON to the file F, or to the screen",
+        )
         module.add_arguments(sub)
         sub.set_defaults(run=module.run)
     return parser

@@ -75,7 +75,6 @@ def emit_json(document: Mapping[str, Any], target: str) -> None:
         write_atomically(Path(target), text.encode())
 
 
-
 def refused(command: str, error: PosoptError) -> int:
     """Say why a command that has already reported its result fails; returns its exit code."""
     print(f"posopt {command}: {error}", file=sys.stderr)

@@ -10,7 +10,8 @@ import math
 
 from numba import njit
 
-from solver.collision.kernels_gjk import dot, gjk, minus, norm, scaled, separation
+from solver.collision.kernels_gjk import gjk, separation
+from solver.collision.kernels_shapes import dot, minus, norm, scaled
 
 IMPROVEMENTS = 8
 

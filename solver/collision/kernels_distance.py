@@ -18,16 +18,7 @@ from solver.collision.kernels_closed import (
     segment_to_segment,
 )
 from solver.collision.kernels_depth import overlap
-from solver.collision.kernels_gjk import (
-    GAP,
-    TOUCH,
-    gjk,
-    minus,
-    norm,
-    scaled,
-    separation,
-    support_of_first,
-)
+from solver.collision.kernels_gjk import GAP, TOUCH, gjk
 from solver.collision.kernels_shapes import (
     BOX,
     CAPSULE,
@@ -36,19 +27,29 @@ from solver.collision.kernels_shapes import (
     SPHERE,
     body_numbers,
     core_radius,
+    dot,
+    minus,
+    norm,
+    placed,
     rotation_numbers,
     row_of_rotations,
     row_of_vectors,
+    scaled,
+    simple_reach,
+    simple_support,
+    turned_back,
     vector_numbers,
 )
 
 __all__ = ["convex_distance", "numbers_distance", "quick_lower_bound", "row_distance"]
 
+UNDECIDED, SEPARATED, OVERLAPPING = 0, 1, 2
+
 ROUNDING = 1e-12
 """Gaps of cores below this are held for touching [m]."""
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def _relative(p, position_a, q, position_b):
     """Rotation (nine, row by row) and position of A in the frame of B."""
     x, y, z = minus(position_a, position_b)
@@ -71,7 +72,7 @@ def _relative(p, position_a, q, position_b):
     return r, t
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def _onto(b, x, y, z):
     """Nearest point of a sphere's or capsule's core, a cylinder or a box B to a point."""
     kind, sx, sy, sz, _, _ = b
@@ -84,7 +85,7 @@ def _onto(b, x, y, z):
     return 0.0, 0.0, 0.0
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def _axes_nearest(a, r, t, b):
     """Nearest points of A's point or axis and of B, where a cylinder B stands for its axis.
 
@@ -100,27 +101,36 @@ def _axes_nearest(a, r, t, b):
     return (t[0] + s * r[2], t[1] + s * r[5], t[2] + s * r[8]), (0.0, 0.0, w)
 
 
+@njit(cache=True, nogil=True, forceinline=True)
+def _closed_form(a, r, t, b, cutoff):
+    """Try the closed forms: (verdict, gap of the cores, direction from B to A, witnesses).
+
+    Undecided, the direction is a good first guess for the search.
+    """
+    if a[0] > CYLINDER or b[0] == HULL:
+        return UNDECIDED, 0.0, t, t, t
+    pa, pb = _axes_nearest(a, r, t, b)
+    between = minus(pa, pb)
+    length = norm(between)
+    if length <= TOUCH:
+        return OVERLAPPING, 0.0, t, t, t
+    n = scaled(1.0 / length, between)
+    if a[0] == SPHERE or (a[0] == CAPSULE and b[0] != CYLINDER):
+        return SEPARATED, length, n, pa, pb
+    # the direction between the axes serves flat ends too, unless an end is nearest
+    x, y, z = turned_back(r, n)
+    bound = dot(n, t) - simple_reach(a, -x, -y, -z) - simple_reach(b, n[0], n[1], n[2])
+    pa = placed(r, t, simple_support(a, -x, -y, -z))
+    pb = _onto(b, pa[0], pa[1], pa[2])
+    if bound > TOUCH and (bound > cutoff or norm(minus(pa, pb)) - bound < GAP):
+        return SEPARATED, bound, n, pa, pb
+    return UNDECIDED, 0.0, n, t, t
+
+
 @njit(cache=True, nogil=True)
-def _core_distance(a, vertices_a, r, t, b, vertices_b, cutoff, wants_depth):
-    """Signed gap of the cores, direction from B to A and witnesses, all in the frame of B."""
-    n = t
-    overlapping = False
-    if a[0] <= CYLINDER and b[0] != HULL:
-        pa, pb = _axes_nearest(a, r, t, b)
-        between = minus(pa, pb)
-        length = norm(between)
-        if length > TOUCH:
-            n = scaled(1.0 / length, between)
-            if a[0] == SPHERE or (a[0] == CAPSULE and b[0] != CYLINDER):
-                return length, n, pa, pb
-            # the direction between the axes serves flat ends too, unless an end is nearest
-            bound = separation(a, vertices_a, r, t, b, vertices_b, n)
-            pa = support_of_first(a, vertices_a, r, t, (-n[0], -n[1], -n[2]))
-            pb = _onto(b, pa[0], pa[1], pa[2])
-            length = norm(minus(pa, pb))
-            if bound > TOUCH and (length - bound < GAP or bound > cutoff):
-                return bound, n, pa, pb
-        overlapping = length <= TOUCH
+def _searched(a, vertices_a, r, t, b, vertices_b, verdict, n, cutoff, wants_depth):
+    """Gap of the cores, direction and witnesses where no closed form has them."""
+    overlapping = verdict == OVERLAPPING
     if not overlapping:
         bound, n, pa, pb, overlapping = gjk(a, vertices_a, r, t, b, vertices_b, n, cutoff)
         if bound > 0.0:
@@ -131,7 +141,7 @@ def _core_distance(a, vertices_a, r, t, b, vertices_b, cutoff, wants_depth):
     return (bound if bound > ROUNDING else min(bound, 0.0)), n, pa, pb
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def _into_world(q, position, p, factor, n, witness, row):
     """Write the point p + factor n of B's frame into a row of the witnesses."""
     x, y, z = p[0] + factor * n[0], p[1] + factor * n[1], p[2] + factor * n[2]
@@ -159,14 +169,19 @@ def numbers_distance(
     if a[0] > b[0]:
         # the closed forms and the frame of B expect the kinds in rising order
         a, b = b, a
-        vertices_a, vertices_b = vertices_b, vertices_a
         rotation_a, rotation_b = rotation_b, rotation_a
         position_a, position_b = position_b, position_a
         row_a, row_b = 1, 0
     r, t = _relative(rotation_a, position_a, rotation_b, position_b)
     radius_a, radius_b = core_radius(a), core_radius(b)
     core_cutoff = max(cutoff + radius_a + radius_b, 0.0)
-    gap, n, pa, pb = _core_distance(a, vertices_a, r, t, b, vertices_b, core_cutoff, wants_depth)
+    verdict, gap, n, pa, pb = _closed_form(a, r, t, b, core_cutoff)
+    if verdict != SEPARATED:
+        if row_a == 1:
+            vertices_a, vertices_b = vertices_b, vertices_a
+        gap, n, pa, pb = _searched(
+            a, vertices_a, r, t, b, vertices_b, verdict, n, core_cutoff, wants_depth
+        )
     _into_world(rotation_b, position_b, pa, -radius_a, n, witness, row_a)
     _into_world(rotation_b, position_b, pb, radius_b, n, witness, row_b)
     return gap - radius_a - radius_b

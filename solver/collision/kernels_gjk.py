@@ -12,7 +12,16 @@ import math
 
 from numba import njit
 
-from solver.collision.kernels_shapes import core_reach, core_support
+from solver.collision.kernels_shapes import (
+    core_reach,
+    core_support,
+    dot,
+    minus,
+    norm,
+    placed,
+    scaled,
+    turned_back,
+)
 from solver.collision.kernels_simplex import edge_weight, tetrahedron_weights, triangle_weights
 
 GAP = 1e-9
@@ -26,56 +35,17 @@ MOST_STEPS = 80
 
 @njit(cache=True, nogil=True)
 def support_of_first(a, vertices_a, r, t, n):
-    """Point of the core of A farthest along n."""
-    x, y, z = core_support(
-        a,
-        vertices_a,
-        r[0] * n[0] + r[3] * n[1] + r[6] * n[2],
-        r[1] * n[0] + r[4] * n[1] + r[7] * n[2],
-        r[2] * n[0] + r[5] * n[1] + r[8] * n[2],
-    )
-    return (
-        r[0] * x + r[1] * y + r[2] * z + t[0],
-        r[3] * x + r[4] * y + r[5] * z + t[1],
-        r[6] * x + r[7] * y + r[8] * z + t[2],
-    )
+    """Point of the core of A farthest against n."""
+    x, y, z = turned_back(r, n)
+    return placed(r, t, core_support(a, vertices_a, -x, -y, -z))
 
 
 @njit(cache=True, nogil=True)
 def separation(a, vertices_a, r, t, b, vertices_b, n):
     """Signed gap of the cores along the unit direction n, from B to A."""
-    reach_a = core_reach(
-        a,
-        vertices_a,
-        -(r[0] * n[0] + r[3] * n[1] + r[6] * n[2]),
-        -(r[1] * n[0] + r[4] * n[1] + r[7] * n[2]),
-        -(r[2] * n[0] + r[5] * n[1] + r[8] * n[2]),
-    )
+    x, y, z = turned_back(r, n)
+    reach_a = core_reach(a, vertices_a, -x, -y, -z)
     return dot(n, t) - reach_a - core_reach(b, vertices_b, n[0], n[1], n[2])
-
-
-@njit(cache=True, nogil=True)
-def dot(u, v):
-    """Scalar product of two triples."""
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-
-
-@njit(cache=True, nogil=True)
-def norm(u):
-    """Length of a triple."""
-    return math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
-
-
-@njit(cache=True, nogil=True)
-def minus(u, v):
-    """Difference of two triples."""
-    return u[0] - v[0], u[1] - v[1], u[2] - v[2]
-
-
-@njit(cache=True, nogil=True)
-def scaled(factor, u):
-    """Multiple of a triple."""
-    return factor * u[0], factor * u[1], factor * u[2]
 
 
 @njit(cache=True, nogil=True)
@@ -109,7 +79,7 @@ def gjk(a, vertices_a, r, t, b, vertices_b, start, cutoff):
     inside = False
     distance = math.inf
     for _ in range(MOST_STEPS):
-        pa = support_of_first(a, vertices_a, r, t, (-n[0], -n[1], -n[2]))
+        pa = support_of_first(a, vertices_a, r, t, n)
         y = minus(pa, core_support(b, vertices_b, n[0], n[1], n[2]))
         bound = dot(n, y)
         if bound > best:

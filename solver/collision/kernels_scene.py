@@ -119,9 +119,7 @@ def _cluster_bound(scene, positions, m, c):
 
 
 @njit(cache=True, nogil=True)
-def check_bodies(
-    scene, first, last, touch, best, rotations, positions, witness, nearest, points
-):
+def check_bodies(scene, first, last, touch, best, rotations, positions, witness, nearest, points):
     """Check placed moving bodies first..last-1 against the fixed ones; stop when one is out.
 
     `best` is the clearance so far [m]; `witness` (2, 3) is work space; `nearest` (2,) receives
@@ -217,9 +215,7 @@ def all_distances(scene, frames, rotations, positions, fixed, among, fixed_point
     for m in range(scene.frame.shape[0]):
         for f in range(scene.rule.shape[1]):
             if scene.rule[m, f] != 0:
-                fixed[m, f] = fixed_distance(
-                    scene, rotations, positions, m, f, fixed_points[m, f]
-                )
+                fixed[m, f] = fixed_distance(scene, rotations, positions, m, f, fixed_points[m, f])
     for p in range(scene.self_pairs.shape[0]):
         a, b = scene.self_pairs[p, 0], scene.self_pairs[p, 1]
         among[p] = self_distance(scene, rotations, positions, a, b, among_points[p])

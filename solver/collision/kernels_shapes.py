@@ -71,9 +71,9 @@ def core_radius(body):
 
 
 @njit(cache=True, nogil=True)
-def core_support(body, vertices, dx, dy, dz):
-    """Point of the core farthest along d, both in the body's own frame."""
-    kind, sx, sy, sz, first, last = body
+def simple_support(body, dx, dy, dz):
+    """Point of the core farthest along d in the body's own frame, for every kind but a hull."""
+    kind, sx, sy, sz, _, _ = body
     if kind == BOX:
         return math.copysign(sx, dx), math.copysign(sy, dy), math.copysign(sz, dz)
     if kind == CYLINDER:
@@ -83,11 +83,30 @@ def core_support(body, vertices, dx, dy, dz):
         return 0.0, 0.0, math.copysign(sx, dz)
     if kind == CAPSULE:
         return 0.0, 0.0, math.copysign(sx, dz)
-    if kind == SPHERE:
-        return 0.0, 0.0, 0.0
-    best = first
+    return 0.0, 0.0, 0.0
+
+
+@njit(cache=True, nogil=True)
+def simple_reach(body, dx, dy, dz):
+    """Largest value of d . x over the core in the body's own frame, for every kind but a hull."""
+    kind, sx, sy, sz, _, _ = body
+    if kind == BOX:
+        return sx * abs(dx) + sy * abs(dy) + sz * abs(dz)
+    if kind == CYLINDER:
+        return sx * abs(dz) + sy * math.sqrt(dx * dx + dy * dy)
+    if kind == CAPSULE:
+        return sx * abs(dz)
+    return 0.0
+
+
+@njit(cache=True, nogil=True)
+def core_support(body, vertices, dx, dy, dz):
+    """Point of the core farthest along d, both in the body's own frame."""
+    if body[0] != HULL:
+        return simple_support(body, dx, dy, dz)
+    best = body[4]
     reach = -math.inf
-    for i in range(first, last):
+    for i in range(body[4], body[5]):
         value = dx * vertices[i, 0] + dy * vertices[i, 1] + dz * vertices[i, 2]
         if value > reach:
             reach = value
@@ -98,17 +117,51 @@ def core_support(body, vertices, dx, dy, dz):
 @njit(cache=True, nogil=True)
 def core_reach(body, vertices, dx, dy, dz):
     """Largest value of d . x over the core, in the body's own frame."""
-    kind, sx, sy, sz, first, last = body
-    if kind == BOX:
-        return sx * abs(dx) + sy * abs(dy) + sz * abs(dz)
-    if kind == CYLINDER:
-        return sx * abs(dz) + sy * math.sqrt(dx * dx + dy * dy)
-    if kind == CAPSULE:
-        return sx * abs(dz)
-    if kind == SPHERE:
-        return 0.0
-    reach = -math.inf
-    for i in range(first, last):
-        value = dx * vertices[i, 0] + dy * vertices[i, 1] + dz * vertices[i, 2]
-        reach = max(reach, value)
-    return reach
+    if body[0] != HULL:
+        return simple_reach(body, dx, dy, dz)
+    x, y, z = core_support(body, vertices, dx, dy, dz)
+    return dx * x + dy * y + dz * z
+
+
+@njit(cache=True, nogil=True)
+def turned_back(r, n):
+    """Direction n of the frame of B in the frame of A, which stands at rotation r."""
+    return (
+        r[0] * n[0] + r[3] * n[1] + r[6] * n[2],
+        r[1] * n[0] + r[4] * n[1] + r[7] * n[2],
+        r[2] * n[0] + r[5] * n[1] + r[8] * n[2],
+    )
+
+
+@njit(cache=True, nogil=True)
+def placed(r, t, p):
+    """Point p of the frame of A in the frame of B."""
+    return (
+        r[0] * p[0] + r[1] * p[1] + r[2] * p[2] + t[0],
+        r[3] * p[0] + r[4] * p[1] + r[5] * p[2] + t[1],
+        r[6] * p[0] + r[7] * p[1] + r[8] * p[2] + t[2],
+    )
+
+
+@njit(cache=True, nogil=True)
+def dot(u, v):
+    """Scalar product of two triples."""
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+@njit(cache=True, nogil=True)
+def norm(u):
+    """Length of a triple."""
+    return math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
+
+
+@njit(cache=True, nogil=True)
+def minus(u, v):
+    """Difference of two triples."""
+    return u[0] - v[0], u[1] - v[1], u[2] - v[2]
+
+
+@njit(cache=True, nogil=True)
+def scaled(factor, u):
+    """Multiple of a triple."""
+    return factor * u[0], factor * u[1], factor * u[2]

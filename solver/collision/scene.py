@@ -57,9 +57,10 @@ class PackedScene(NamedTuple):
     """What the kernels read; all poses of fixed bodies are in fanuc_world.
 
     `frame` (m,) is the D-H frame that carries each moving body, `radius` (m,) that of the
-    sphere about its origin that contains it; rows from `tool` on belong to the tool. `bound` holds a simple body
-    around each fixed one, for culling: itself, or a box for a hull. Fixed bodies are ordered by
-    cluster; `cluster_*` are boxes around them for culling. `rule`, `threshold` are (m, f);
+    sphere about its origin that contains it; rows from `tool` on belong to the tool.
+    `bound` holds a simple body around each fixed one, for culling: itself, or a box for a hull.
+    Fixed bodies are ordered by cluster; `cluster_*` are boxes around them for culling.
+    `rule`, `threshold` are (m, f);
     `touch_group` (f,) numbers the workpiece's groups (-1 elsewhere); `depth` (m,) belongs to
     contact bodies; `widest` (m,) is the largest threshold of a row, -inf where it has only
     clearance rules; `self_pairs` (p, 2) are rows of the moving bodies.
@@ -121,7 +122,8 @@ class CollisionScene:
     """The packed scene with the names behind its rows.
 
     `shapes` are those of the moving bodies. `meshes` are the fixed triangle meshes with their
-    pose in fanuc_world; they are no rows of the packed scene and are checked apart. `touch_names` gives the number of each group.
+    pose in fanuc_world; they are no rows of the packed scene and are checked apart.
+    `touch_names` gives the number of each group.
     """
 
     packed: PackedScene
@@ -139,7 +141,11 @@ class CollisionScene:
     @property
     def pair_count(self) -> int:
         """Number of body pairs that a pose is checked for."""
-        return int(np.count_nonzero(self.packed.rule)) + len(self.packed.self_pairs) + len(self.mesh_rules)
+        return (
+            int(np.count_nonzero(self.packed.rule))
+            + len(self.packed.self_pairs)
+            + len(self.mesh_rules)
+        )
 
 
 def build_scene(problem: PlanningProblem) -> CollisionScene:
@@ -239,7 +245,9 @@ def _self_pairs(problem: PlanningProblem, labels: list[BodyLabel]) -> IntArray:
         for first, one in enumerate(labels):
             for second in range(first + 1, len(labels)):
                 other = labels[second]
-                same = one.owner == other.owner and (one.owner == "tool" or one.group == other.group)
+                same = one.owner == other.owner and (
+                    one.owner == "tool" or one.group == other.group
+                )
                 if not same and not _are_neighbours(problem, one, other):
                     pairs.append((first, second))
     return np.array(pairs, np.int64).reshape(-1, 2)
@@ -356,9 +364,7 @@ def _enclosing_box(
     return (high - low) / 2, pose
 
 
-def _extent(
-    shape: ConvexShape, pose: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def _extent(shape: ConvexShape, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Axis-aligned bounds of a posed shape (exact but for cylinders, whose rim is rounded up)."""
     rotation, centre = pose[:3, :3], pose[:3, 3]
     if isinstance(shape, Hull):

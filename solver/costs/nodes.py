@@ -28,7 +28,9 @@ def path_shares(passes: tuple[Pass, ...]) -> FloatArray:
         shares.append(share)
     joined = np.concatenate(shares)
     total = joined.sum()
-    return joined / total if total > 0.0 else np.full(len(joined), 1.0 / len(joined))
+    equal = np.full(len(joined), 1.0 / len(joined))
+    shared: FloatArray = joined / total if total > 0.0 else equal
+    return shared
 
 
 def node_terms(
@@ -46,10 +48,10 @@ def node_terms(
     lean = np.array([one.lean for one in passes])[number]
     lead = np.array([one.lead for one in passes])[number]
     tight = np.maximum(0.0, 1.0 - clearance / weights.comfort)
-    cost = (
+    cost: FloatArray = (
         weights.clearance * tight**2
         + weights.lean * ((angles[:, 0] - lean) / DEVIATION_UNIT) ** 2
         + weights.lead * ((angles[:, 1] - lead) / DEVIATION_UNIT) ** 2
     )
-    share: FloatArray = path_shares(passes)[waypoint]
-    return share * cost
+    weighted: FloatArray = path_shares(passes)[waypoint] * cost
+    return weighted

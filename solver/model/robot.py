@@ -118,7 +118,7 @@ class Robot:
     @property
     def pendant_from_model(self) -> FloatArray:
         """(6, 6) inverse of `model_from_pendant`."""
-        return np.linalg.inv(self.model_from_pendant)
+        return np.asarray(np.linalg.inv(self.model_from_pendant), dtype=np.float64)
 
     @property
     def arm_lengths(self) -> tuple[float, float, float, float]:

@@ -39,7 +39,7 @@ class Sweep:
     def angles(self) -> FloatArray:
         """All angles, ascending [rad]; the upper bound is one of them where the step meets it."""
         count = math.floor((self.upper - self.lower) / self.step + 1e-9) + 1
-        return self.lower + self.step * np.arange(count)
+        return self.lower + self.step * np.arange(count, dtype=np.float64)
 
     @classmethod
     def fixed(cls, angle: float = 0.0) -> Sweep:

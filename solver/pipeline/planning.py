@@ -22,10 +22,10 @@ from solver.costs.steps import gaps
 from solver.model.problem import PlanningProblem
 from solver.model.settings import EdgeCost, Scheme
 from solver.progress import Monitor, SilentMonitor
+from solver.search import paper
 from solver.search.bottleneck import best_minimum_clearance
 from solver.search.exact import ExactResult, exact
 from solver.search.graph import LayeredGraph
-from solver.search import paper
 from solver.transforms import FloatArray, IntArray
 
 
@@ -40,6 +40,7 @@ def plan(
     Parameters
     ----------
     problem : PlanningProblem
+        Everything that the plan depends on.
     monitor : Monitor, optional
         Learns the progress and may cancel; none is silent.
     compare : iterable of Scheme

@@ -18,7 +18,7 @@ from solver.io.verified_program import write_verified
 from solver.model.problem import PlanningProblem
 from solver.model.program import JointProgram, Move, rounded_joints
 from solver.model.toolpath import Event
-from solver.transforms import FloatArray
+from solver.pipeline.flow_check import check_flow
 from solver.units import MM, MM_PER_M
 
 CELL_REMARK = "CELL "
@@ -61,7 +61,8 @@ def build_program(
                 joints=row,
                 percent=settings.approach_percent if np.isnan(arriving) else None,
                 duration=None if np.isnan(arriving) else arriving,
-                cnt=None if fine else 100,
+                # What happens at a waypoint happens there, not while its corner is being cut.
+                cnt=None if fine or index in events else 100,
                 waypoint=index,
                 events=events.get(index, ()),
             )
@@ -167,4 +168,7 @@ def check_program(
     numbers = Check(
         "frame and tool numbers", wrong == 0, wrong, 0, "other", f"UF {wanted[0]}, UT {wanted[1]}"
     )
-    return (numbers, *check_positions(problem, written.path_joints(), least_clearance))
+    flow = check_flow(written)
+    if not flow.passed:
+        return (flow, numbers)
+    return (flow, numbers, *check_positions(problem, written.path_joints(), least_clearance))

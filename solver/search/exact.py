@@ -8,7 +8,7 @@ import numpy as np
 
 from solver.progress import Monitor, SilentMonitor
 from solver.search.graph import NO_PATH, LayeredGraph
-from solver.search.kernels_layers import first_path
+from solver.search.kernels_sweep import first_path
 from solver.search.sweeps import Progress, carry, kernel_arrays, metric_of, total_work
 from solver.transforms import FloatArray, IntArray
 

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from solver.search.kernels_layers import (
+from solver.search.kernels_edges import (
     BEST_ROW,
     EUCLIDEAN,
     ROWS,

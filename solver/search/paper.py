@@ -21,7 +21,7 @@ from solver.search.kernels_astar import (
     estimate,
     open_starts,
 )
-from solver.search.kernels_layers import ROWS, TILE
+from solver.search.kernels_edges import ROWS, TILE
 from solver.search.sweeps import STAGE, kernel_arrays
 from solver.transforms import FloatArray, IntArray
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from solver.progress import Monitor, checkpoint
 from solver.search.graph import JOINTS, LayeredGraph
-from solver.search.kernels_layers import ABSOLUTE, EUCLIDEAN, SQUARED, GraphArrays, sweep
+from solver.search.kernels_edges import ABSOLUTE, EUCLIDEAN, SQUARED, GraphArrays
+from solver.search.kernels_sweep import sweep
 from solver.transforms import FloatArray
 
 STAGE = "search"

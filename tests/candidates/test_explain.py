@@ -21,7 +21,12 @@ def test_explanations_agree_with_the_filters_that_stop_early(candidates):
         n, o, b = (int(random.integers(size)) for size in shape)
         lean, lead, spin = candidates.orientations[o]
         found = explain(
-            candidates.problem, n, lean, int(candidates.branches[b]), lead=lead, spin=spin,
+            candidates.problem,
+            n,
+            lean,
+            int(candidates.branches[b]),
+            lead=lead,
+            spin=spin,
             scene=candidates.scene,
         )
         outcome = Outcome(candidates.outcome[n, o, b])
@@ -42,7 +47,10 @@ def test_a_margin_is_positive_exactly_when_its_filter_passes(candidates):
     for o in range(0, len(candidates.orientations), 7):
         for branch in candidates.branches:
             found = explain(
-                candidates.problem, 11, candidates.orientations[o, 0], int(branch),
+                candidates.problem,
+                11,
+                candidates.orientations[o, 0],
+                int(branch),
                 scene=candidates.scene,
             )
             for one in found.filters:

@@ -54,7 +54,9 @@ def test_two_runs_write_the_same_bytes(here, capsys):
 
 
 def test_plan_prints_a_document(here, capsys):
-    code, found = document(capsys, "plan", "groove_paper", "--scheme", "f1", "--no-program", "--json")
+    code, found = document(
+        capsys, "plan", "groove_paper", "--scheme", "f1", "--no-program", "--json"
+    )
     assert code == 0
     assert found["scheme"] == "f1"
     assert set(found["schemes"]) == {"f1", "exact", "f2"}
@@ -93,8 +95,15 @@ def test_less_clearance_must_be_accepted_in_words(here, capsys):
 
 def test_accepting_more_than_can_be_reached_is_refused(here, capsys):
     code, _, _ = run(
-        capsys, "plan", "groove_paper", "--beam", "HW125", "--out", "S.LS",
-        "--accept-clearance", "49",
+        capsys,
+        "plan",
+        "groove_paper",
+        "--beam",
+        "HW125",
+        "--out",
+        "S.LS",
+        "--accept-clearance",
+        "49",
     )
     assert code == 4
     assert not list(here.iterdir())
@@ -105,7 +114,7 @@ def test_a_changed_position_is_caught(here, capsys):
     text = (here / "G.LS").read_bytes().decode("ascii")
     start = text.index("P[20]{")
     at = text.index("J2=", start) + 3
-    changed = text[:at] + f"{float(text[at:at + 10]) + 0.05:>10.3f}" + text[at + 10 :]
+    changed = text[:at] + f"{float(text[at : at + 10]) + 0.05:>10.3f}" + text[at + 10 :]
     (here / "G.LS").write_bytes(changed.encode("ascii"))
     code, found = document(capsys, "check", "G.LS", "--json")
     assert code == 4
@@ -123,9 +132,7 @@ def test_a_cell_is_never_assumed(here, capsys):
 
 
 def test_fk_gives_the_measured_pose(capsys):
-    code, found = document(
-        capsys, "fk", "fanuc_m20ia", "--joints", "30,20,-10,15,-60,45", "--json"
-    )
+    code, found = document(capsys, "fk", "fanuc_m20ia", "--joints", "30,20,-10,15,-60,45", "--json")
     expected = [1154.9123, 640.9070, 752.4997, 155.7498, -2.8516, 80.8485]
     assert code == 0
     assert np.allclose(found["results"][0]["pose"], expected, atol=6e-5)
@@ -141,9 +148,7 @@ def test_negative_first_numbers_are_no_options(capsys):
 
 
 def test_ik_finds_the_joints_again(capsys):
-    code, found = document(
-        capsys, "ik", "fanuc_m20ia", "--pose", "985,0,940,180,0,0", "--json"
-    )
+    code, found = document(capsys, "ik", "fanuc_m20ia", "--pose", "985,0,940,180,0,0", "--json")
     assert code == 0
     joints = [one["joints_deg"] for one in found["results"][0]["solutions"]]
     assert np.abs(np.array(joints) - [0, 0, 0, 0, -90, 0]).max(axis=1).min() < 1e-9
@@ -231,8 +236,14 @@ def test_bad_input_is_one_sentence_and_exit_2(here, capsys, arguments):
 
 @pytest.mark.parametrize(
     "arguments",
-    [("plan", "--scheme", "best"), (), ("fly",), ("list", "ships"), ("fk", "fanuc_m20ia"),
-     ("bench", "--repeats", "many")],
+    [
+        ("plan", "--scheme", "best"),
+        (),
+        ("fly",),
+        ("list", "ships"),
+        ("fk", "fanuc_m20ia"),
+        ("bench", "--repeats", "many"),
+    ],
     ids=" ".join,
 )
 def test_bad_arguments_are_one_line_and_exit_2(here, capsys, arguments):

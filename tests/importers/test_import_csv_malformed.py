@@ -338,3 +338,16 @@ def test_a_cut_table_is_never_read_as_a_shorter_path_with_the_same_last_row() ->
     required = b",".join(cell.encode() for cell in ROWS[-1][:-1]) + b","
     for end in range(last + 1, last + len(required)):
         refused(whole[:end])
+
+
+@pytest.mark.parametrize(
+    "line", ["," * 200_000, "x[" + " " * 200_000, '"' * 200_001, "# frame:" + " " * 200_000 + "b b"]
+)
+def test_a_very_long_line_is_refused_without_long_work(line: str) -> None:
+    refused(f"{line}\n1,2,3\n".encode())
+    refused(f"x,y,z\n{line.strip('#')}\n".encode())
+
+
+def test_a_failed_formula_in_the_first_cell_is_no_comment() -> None:
+    for text in ("#REF!", "#N/A", "#DIV/0!"):
+        assert "x is" in refused(changed(3, "x", text)).message

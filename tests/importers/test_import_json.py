@@ -176,11 +176,12 @@ def test_numbers_are_read_as_the_standard_library_reads_them() -> None:
         assert value == pytest.approx(json.loads(text) / 1000.0, rel=1e-15)
 
 
-def test_bytes_in_gbk_are_read_when_stated() -> None:
+@pytest.mark.parametrize("stated", [None, "gbk"])
+def test_bytes_in_gbk_are_read(stated: str | None) -> None:
     value = document()
     value["passes"][0]["name"] = "粗磨"
     data = json.dumps(value, ensure_ascii=False).encode("gbk")
-    path = loaded(data, "path.json", replace(NOTHING_STATED, encoding="gbk"))
+    path = loaded(data, "path.json", replace(NOTHING_STATED, encoding=stated))
     assert path.passes[0].name == "粗磨"
 
 

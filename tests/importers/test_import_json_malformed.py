@@ -9,7 +9,7 @@ import pytest
 from path_examples import as_json, document, refused
 
 from solver.errors import InputError
-from solver.io.importers import ImportOptions
+from solver.io.importers import ImportOptions, located_json
 
 FILE = "path.json"
 NOTHING_STATED = ImportOptions()
@@ -293,3 +293,23 @@ def test_bytes_that_are_no_text_are_refused(data: bytes) -> None:
     error = refused(data, FILE, NOTHING_STATED)
     assert error.place is not None
     assert error.place.line == 1
+
+
+def test_more_values_than_the_memory_is_meant_for_are_refused(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(located_json, "MAX_VALUES", 100)
+    text = f"[{', '.join(['[[]]'] * 60)}]"
+    assert "100" in refused(text.encode(), FILE, NOTHING_STATED).message
+    assert "100" in refused(f"[{'1,' * 2000}1]".encode(), FILE, NOTHING_STATED).message
+
+
+def test_places_are_found_quickly_in_a_document_of_many_passes() -> None:
+    # Looking up the line of every pass anew made this quadratic.
+    value = document()
+    waypoints = value["passes"][0]["waypoints"]
+    value["passes"] = [{"name": str(index), "waypoints": waypoints} for index in range(3000)]
+    value["passes"].append({"name": "7", "waypoints": waypoints})
+    error = refused(as_json(value), FILE, NOTHING_STATED)
+    assert error.place is not None
+    assert error.place.key == "passes[3000].name"

@@ -1,5 +1,6 @@
 """The reconstructed cell of the paper gives the published reconstruction's figures."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -80,8 +81,14 @@ def test_the_cost_is_in_model_angles(result):
 
 @pytest.mark.parametrize(
     ("beam", "least_mm"),
-    [("HW125", 36.5), ("HW150", 27.6), ("HW175", 22.3), ("HW200", 21.2), ("HW250", 15.9),
-     ("HW350", 12.0)],
+    [
+        ("HW125", 36.5),
+        ("HW150", 27.6),
+        ("HW175", 22.3),
+        ("HW200", 21.2),
+        ("HW250", 15.9),
+        ("HW350", 12.0),
+    ],
 )
 def test_standard_search_on_the_other_beams(beam, least_mm):
     result = plan(load_cell("groove_paper", beam=beam), compare=(Scheme.F,))
@@ -96,5 +103,5 @@ def test_hw125_cannot_keep_the_safety_distance_and_says_so():
     assert sequence.least_clearance == pytest.approx(result.hard_minimum, abs=1e-12)
     # No layer allows more: the best reachable minimum is the least of the layers' maxima.
     nodes = result.candidates.nodes
-    best = [nodes.clearance[a:b].max() for a, b in zip(nodes.offsets, nodes.offsets[1:])]
+    best = [nodes.clearance[a:b].max() for a, b in itertools.pairwise(nodes.offsets)]
     assert result.hard_minimum == pytest.approx(min(best), abs=1e-12)

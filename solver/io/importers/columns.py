@@ -58,6 +58,7 @@ _ALIASES: Final[Mapping[str, str]] = MappingProxyType(
 """Accepted titles, in lower case and without unit -> field."""
 
 _BRACKETED: Final = re.compile(r"([^\[(（]*[^\[(（\s])\s*[\[(（]\s*([^\])）]*?)\s*[\])）]")
+_LONGEST_TITLE: Final = 64
 _SUFFIXES: Final = {"_mm_s": "mm/s", "_m_s": "m/s", "_mm": "mm", "_m": "m", "_deg": "deg"}
 
 
@@ -141,6 +142,8 @@ def columns_from_numbers(mapping: Mapping[str, int], first: Row, file: str) -> C
 
 def _split_title(title: str) -> tuple[str, str | None]:
     """Return a title without its unit in lower case, and the unit."""
+    if len(title) > _LONGEST_TITLE:
+        return title, None
     if found := _BRACKETED.fullmatch(title):
         return found[1].casefold(), found[2].casefold()
     name = title.casefold()

@@ -57,7 +57,7 @@ def import_json(source: Source, options: ImportOptions) -> Toolpath:
         One sentence with the file, the line, the column and the path of the value, such as
         ``passes[0].waypoints[3].position[1]``.
     """
-    document = parse_json(source.file, source.text(options.encoding or "utf-8"))
+    document = parse_json(source.file, source.text(options.encoding))
     root = _Cursor(document, document.root, "")
     members = root.members(_FILE_MEMBERS, ("format", "version", "passes"))
     _check_version(members)

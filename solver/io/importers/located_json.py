@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from bisect import bisect_right
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
@@ -19,6 +20,13 @@ from solver.io.importers.naming import shown
 MAX_DEPTH: Final = 32
 """Deepest nesting of arrays and objects."""
 
+MAX_VALUES: Final = 4_000_000
+"""Most values of a document; more would exhaust the memory of a small machine."""
+
+_LONGEST_ROW: Final = 2000
+"""Longer arrays of numbers [characters] are read value by value, so that they are counted."""
+
+_LINE_END: Final = re.compile(r"\r\n|\n|\r")
 _BLANK: Final = re.compile(r"[ \t\r\n]*+")
 _STRING: Final = re.compile(r'"[^"\\\x00-\x1f]*+(?:\\.[^"\\\x00-\x1f]*+)*+"')
 _WORD: Final = re.compile(r'[^\s,:\[\]{}"]++')
@@ -49,10 +57,12 @@ class Document:
     file: str
     text: str
     root: Node
+    _starts: list[int]
 
     def place(self, offset: int, path: str | None = None) -> Place:
         """Return the line and column, both from 1, of the character at `offset`."""
-        return _place(self.file, self.text, offset, path)
+        line = bisect_right(self._starts, offset)
+        return Place(self.file, line, offset - self._starts[line - 1] + 1, path)
 
     def elements(self, array: Node) -> list[Node] | None:
         """Return the elements of an array, None where the value is none."""
@@ -86,12 +96,8 @@ def parse_json(file: str, text: str) -> Document:
     InputError
         At the first character that does not belong there.
     """
-    return Document(file, text, _Parser(file, text).parse())
-
-
-def _place(file: str, text: str, offset: int, path: str | None = None) -> Place:
-    before = text[:offset].replace("\r\n", "\n").replace("\r", "\n")
-    return Place(file, before.count("\n") + 1, len(before) - before.rfind("\n"), path)
+    starts = [0, *(end.end() for end in _LINE_END.finditer(text))]
+    return Document(file, text, _Parser(file, text, starts).parse(), starts)
 
 
 class _Expect(Enum):
@@ -109,8 +115,10 @@ class _Expect(Enum):
 class _Parser:
     """One pass over the text with a stack of the open arrays and objects."""
 
-    def __init__(self, file: str, text: str) -> None:
-        self._file, self._text, self._at = file, text, 0
+    def __init__(self, file: str, text: str, starts: list[int]) -> None:
+        self._document = Document(file, text, Node(None, 0), starts)
+        self._values = 0
+        self._text, self._at = text, 0
         self._open: list[Node] = []
         self._name: tuple[str, int] = ("", -1)
         self._root: Node | None = None
@@ -161,7 +169,7 @@ class _Parser:
     def _plain_numbers(self) -> bool:
         """Take an array of numbers at once; without a fault in it, that is the common case."""
         found = _NUMBERS.match(self._text, self._at)
-        if not found or len(self._open) >= MAX_DEPTH:
+        if not found or len(self._open) >= MAX_DEPTH or len(found[0]) > _LONGEST_ROW:
             return False
         numbers = tuple(map(float, found[1].split(",")))
         if not all(map(math.isfinite, numbers)):
@@ -235,6 +243,9 @@ class _Parser:
 
     def _add(self, node: Node) -> None:
         self._require(_Expect.VALUE, _Expect.VALUE_OR_END)
+        self._values += 1
+        if self._values > MAX_VALUES:
+            raise self._fault(f"there are more values than expected (at most {MAX_VALUES:,})")
         self._expect = _Expect.COMMA_OR_END if self._open else _Expect.NOTHING
         if not self._open:
             self._root = node
@@ -253,4 +264,4 @@ class _Parser:
             raise self._fault(f"found {shown(token)}, expected {self._expect.value}")
 
     def _fault(self, message: str) -> InputError:
-        return InputError(message, _place(self._file, self._text, self._at))
+        return InputError(message, self._document.place(self._at))

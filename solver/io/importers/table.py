@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -12,7 +13,9 @@ from solver.io.importers.naming import shown
 
 DELIMITER_NAMES: Final = {",": "comma", ";": "semicolon", "\t": "tab"}
 
-_LINE_END: Final = re.compile(r"\r\n|\n|\r")
+LONGEST_LINE: Final = 100_000
+"""Longest line [characters]; no table of waypoints comes near it."""
+
 _DIRECTIVE: Final = re.compile(
     r"\s*(?:#+|//|;+)\s*(frame|unit|坐标系|单位)\s*[:=：]\s*(\S+)\s*", re.IGNORECASE
 )
@@ -40,18 +43,18 @@ class Directive:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """The first row, the directives above it, and the rows below it, split when asked for."""
+    """The first row, the directives above it, and the rows below it, read once when asked for."""
 
     file: str
     first: Row
     directives: dict[str, Directive]
     delimiter: str
-    _lines: list[str]
+    _below: Iterator[tuple[int, str]]
 
     def rows(self) -> Iterator[Row]:
         """Yield the rows below the first; a row with another number of cells is refused."""
         expected = len(self.first.cells)
-        for line, text in enumerate(self._lines[self.first.line :], start=self.first.line + 1):
+        for line, text in self._below:
             if _is_blank(text):
                 continue
             if _is_comment(text, self.delimiter):
@@ -74,9 +77,9 @@ def read_table(file: str, text: str, rank: Callable[[tuple[str, ...]], int]) -> 
     `rank` says how well the cells of the first row fit as a header; it decides between tab
     and comma where a first row holds both.
     """
-    lines = _LINE_END.split(text)
+    lines = _lines(text)
     directives: dict[str, Directive] = {}
-    for number, line in enumerate(lines, start=1):
+    for number, line in lines:
         if _is_blank(line):
             continue
         if _is_comment(line, ""):
@@ -93,6 +96,10 @@ def read_table(file: str, text: str, rank: Callable[[tuple[str, ...]], int]) -> 
 
 def split_row(text: str, delimiter: str, place: Place) -> tuple[str, ...]:
     """Split a line into cells; a cell may be quoted with double quotes, doubled inside."""
+    if len(text) > LONGEST_LINE:
+        raise InputError(
+            f"the line has {len(text):,} characters, expected at most {LONGEST_LINE:,}", place
+        )
     if '"' not in text:
         return tuple(cell.strip(" \t") for cell in text.split(delimiter))
     cells: list[str] = []
@@ -129,6 +136,12 @@ def _next_cell(text: str, start: int, delimiter: str, place: Place) -> tuple[str
     if text[quote + 1 : following].strip(" \t"):
         raise InputError("text follows the closing quote of a cell, expected a delimiter", place)
     return '"'.join(parts).strip(" \t"), following + 1
+
+
+def _lines(text: str) -> Iterator[tuple[int, str]]:
+    """Yield the number of every line, from 1, and its text; lines end with LF, CRLF or CR."""
+    for number, line in enumerate(io.StringIO(text, newline=None), start=1):
+        yield number, line.removesuffix("\n")
 
 
 def _delimiter(line: str, place: Place, rank: Callable[[tuple[str, ...]], int]) -> str:
