@@ -90,7 +90,8 @@ class CandidateSet:
     @property
     def lean(self) -> FloatArray:
         """(k,) lean of every node [rad]."""
-        return self.orientations[self.nodes.candidate[:, 1], 0]
+        lean: FloatArray = self.orientations[self.nodes.candidate[:, 1], 0]
+        return lean
 
 
 def orientations(settings: PlanningSettings) -> FloatArray:

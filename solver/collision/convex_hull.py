@@ -15,6 +15,8 @@ import numpy as np
 from solver.errors import ModelError
 from solver.transforms import FloatArray, IntArray
 
+NO_HULL: Final = "no closed convex hull was found: its vertices are all but flat"
+
 FLATNESS: Final = (1e-9, 1e-7, 1e-6, 1e-5, 1e-11)
 """Vertices this near to a face, relative to the hull's size, belong to it; tried in turn, since
 noise of the same size as one of them can leave the faces without a common edge."""
@@ -46,7 +48,7 @@ def hull_triangles(vertices: FloatArray) -> tuple[IntArray, FloatArray]:
             scale, centre = _growth(vertices, triangles)
             if scale is not None:
                 return triangles, centre + (vertices - centre) * scale
-    raise ModelError("no closed convex hull was found: its vertices are all but flat")
+    raise ModelError(NO_HULL)
 
 
 def _distinct(vertices: FloatArray, distance: float) -> IntArray:
@@ -129,6 +131,8 @@ def _supporting_normal(
     angle = np.where(away, np.arctan2(np.minimum(v, 0.0), u), -math.inf)
     angle[away & (v >= -flat) & (u < 0.0)] = -math.pi
     turn = float(angle.max())
+    if math.isinf(turn):
+        raise ModelError(NO_HULL)
     return math.cos(turn) * normal - math.sin(turn) * outward
 
 

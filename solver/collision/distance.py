@@ -8,6 +8,7 @@ import numpy as np
 
 from solver.collision.kernels_distance import convex_distance
 from solver.collision.kernels_shapes import BOX, CAPSULE, CYLINDER, HULL, SPHERE
+from solver.errors import ModelError
 from solver.model.shapes import Box, Capsule, ConvexShape, Cylinder, Hull, Sphere
 from solver.transforms import FloatArray, frozen
 
@@ -59,6 +60,19 @@ def pack_shape(shape: ConvexShape) -> PackedShape:
     return PackedShape(kind, np.array(size), vertices)
 
 
+def _rigid_pose(which: str, pose: FloatArray) -> FloatArray:
+    pose = frozen(pose, (4, 4))
+    rotation = pose[:3, :3]
+    if not (
+        np.isfinite(pose).all()
+        and np.allclose(pose[3], (0.0, 0.0, 0.0, 1.0), rtol=0.0, atol=1e-9)
+        and np.allclose(rotation @ rotation.T, np.eye(3), rtol=0.0, atol=1e-9)
+        and np.linalg.det(rotation) > 0.0
+    ):
+        raise ModelError(f"the pose of the {which} shape is not a finite rotation and position")
+    return pose
+
+
 def distance(
     shape_a: ConvexShape, pose_a: FloatArray, shape_b: ConvexShape, pose_b: FloatArray
 ) -> DistanceResult:
@@ -79,9 +93,14 @@ def distance(
     -------
     DistanceResult
         Certified distance and nearest points in that frame.
+
+    Raises
+    ------
+    ModelError
+        A pose is not a rigid transform.
     """
     a, b = pack_shape(shape_a), pack_shape(shape_b)
-    pose_a, pose_b = frozen(pose_a, (4, 4)), frozen(pose_b, (4, 4))
+    pose_a, pose_b = _rigid_pose("first", pose_a), _rigid_pose("second", pose_b)
     witness = np.zeros((2, 3))
     gap = convex_distance(
         a.kind,

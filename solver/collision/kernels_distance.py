@@ -112,7 +112,7 @@ def _closed_form(a, r, t, b, cutoff):
     pa, pb = _axes_nearest(a, r, t, b)
     between = minus(pa, pb)
     length = norm(between)
-    if length <= TOUCH:
+    if not length > TOUCH:  # so that a pose that is not a number ends as an overlap
         return OVERLAPPING, 0.0, t, t, t
     n = scaled(1.0 / length, between)
     if a[0] == SPHERE or (a[0] == CAPSULE and b[0] != CYLINDER):

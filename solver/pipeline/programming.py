@@ -169,6 +169,10 @@ def check_program(
         "frame and tool numbers", wrong == 0, wrong, 0, "other", f"UF {wanted[0]}, UT {wanted[1]}"
     )
     flow = check_flow(written)
+    named = Path(written.file).stem.upper() == written.name
+    name = Check(
+        "program name", named, int(not named), 0, "differing", f"{written.name} in {written.file}"
+    )
     if not flow.passed:
-        return (flow, numbers)
-    return (flow, numbers, *check_positions(problem, written.path_joints(), least_clearance))
+        return (name, flow, numbers)
+    return (name, flow, numbers, *check_positions(problem, written.path_joints(), least_clearance))

@@ -226,6 +226,8 @@ def sweep(
     (node cost + value) + edge. `widest` takes the larger of node cost and value instead of
     the sum. piece_low..piece_high-1 are the targets to do, counted within their layer.
     """
+    if gap_count == 0:
+        return
     offsets = graph.offsets
     size = 0
     for index in range(gap_count):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from solver.collision.distance import distance, pack_shape
+from solver.errors import ModelError
 from solver.model.shapes import Box, Capsule, Cylinder, Hull, Mesh, Sphere
 from solver.transforms import rigid, rotation_x, rotation_y, rotation_z
 
@@ -149,3 +150,13 @@ def test_mesh_is_refused_as_not_convex():
     mesh = Mesh(np.eye(3), np.array([[0, 1, 2]]))
     with pytest.raises(TypeError, match="Mesh is not a convex shape"):
         pack_shape(mesh)
+
+
+@pytest.mark.parametrize(
+    "pose",
+    [np.full((4, 4), np.nan), np.diag([2.0, 2.0, 2.0, 1.0]), np.diag([1.0, 1.0, -1.0, 1.0])],
+    ids=["not a number", "scaled", "mirrored"],
+)
+def test_pose_that_is_no_rigid_transform_is_refused(pose):
+    with pytest.raises(ModelError, match="the pose of the second shape"):
+        distance(UNIT_BOX, HERE, UNIT_BOX, pose)

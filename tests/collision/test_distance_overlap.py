@@ -2,6 +2,7 @@
 
 import math
 
+import fcl
 import numpy as np
 import pytest
 from distance_oracle import KIND_PAIRS, PAIR_NAMES, outside, plane_gap, random_bodies
@@ -55,7 +56,7 @@ def test_deepest_points_lie_on_the_bodies(kinds):
 
 
 @pytest.mark.parametrize("kinds", KIND_PAIRS, ids=PAIR_NAMES)
-def test_stated_depth_is_an_upper_bound_along_every_sampled_direction(kinds):
+def test_no_sampled_plane_parts_bodies_that_are_said_to_overlap(kinds):
     bodies_a, bodies_b, found, _ = overlapping_pairs(kinds, 40)
     rng = np.random.default_rng(11)
     for _ in range(200):
@@ -124,3 +125,48 @@ def test_bodies_in_the_same_place_overlap(shape, other):
     assert found.distance < -0.01
     assert np.isfinite(found.point_a).all()
     assert np.isfinite(found.point_b).all()
+
+
+@pytest.mark.parametrize("kinds", KIND_PAIRS, ids=PAIR_NAMES)
+def test_pose_that_is_not_a_number_counts_as_an_overlap(kinds):
+    rng = np.random.default_rng(13)
+    bodies_a, bodies_b = (random_bodies(rng, kind, 3, aligned=False) for kind in kinds)
+    for axis in range(3):
+        bodies_a.position[axis, axis] = np.nan
+        witness = np.empty((2, 3))
+        found = convex_distance(*bodies_a.body(axis), *bodies_b.body(axis), witness)
+        assert found <= 0.0
+
+
+FCL_PAIRS = [pair for pair in KIND_PAIRS if 4 not in pair]
+
+
+@pytest.mark.parametrize("aligned", [False, True], ids=["random", "aligned"])
+@pytest.mark.parametrize(
+    "kinds", FCL_PAIRS, ids=[PAIR_NAMES[KIND_PAIRS.index(p)] for p in FCL_PAIRS]
+)
+def test_fcl_collides_where_and_only_where_bodies_overlap(kinds, aligned):
+    rng = np.random.default_rng([17, *kinds, aligned])
+    bodies = [random_bodies(rng, kind, 200, aligned=aligned) for kind in kinds]
+    witness = np.empty((2, 3))
+    seen = {True: 0, False: 0}
+    for i in range(200):
+        bodies[0].position[i] *= 0.4
+        bodies[1].position[i] *= 0.4
+        found = convex_distance(*bodies[0].body(i), *bodies[1].body(i), witness)
+        if abs(found) > 1e-3:
+            hit = fcl.collide(*(fcl_object(*body.body(i)) for body in bodies)) > 0
+            assert hit == (found < 0.0)
+            seen[hit] += 1
+    assert min(seen.values()) > 10
+
+
+def fcl_object(kind, size, _, rotation, position):
+    x, y, z = size
+    shape = (
+        lambda: fcl.Sphere(x),
+        lambda: fcl.Capsule(y, 2 * x),
+        lambda: fcl.Cylinder(y, 2 * x),
+        lambda: fcl.Box(2 * x, 2 * y, 2 * z),
+    )[kind]()
+    return fcl.CollisionObject(shape, fcl.Transform(rotation, position))

@@ -1,0 +1,197 @@
+"""A fault put into a written program, or a changed cell, is caught under its own name."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from solver.catalog import load_cell
+from solver.io.ls_reader import read_program
+from solver.model.toolpath import Event, EventKind
+from solver.pipeline.planning import plan
+from solver.pipeline.programming import build_program, check_program, write_program
+from solver.transforms import rigid
+from solver.units import MM
+
+POSITION = re.compile(r"(P\[(\d+)\]\{\r\n   GP1:\r\n\tUF : 0, UT : 1,\t\r\n)(.*?)(\r\n\};)", re.S)
+JOINT = re.compile(r"J(\d)=(.{10}) deg")
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    result = plan(load_cell("groove_hw300"))
+    path = tmp_path_factory.mktemp("program") / "GROOVE.LS"
+    write_program(result, path)
+    return result, path.read_bytes().decode("ascii")
+
+
+def failed(problem, text, file="GROOVE.LS", least=50.0 * MM):
+    checks = check_program(problem, read_program(text, file), least)
+    return {check.name for check in checks if not check.passed}
+
+
+def change_joints(text, number, change):
+    """Apply `change` to the six joints [deg] of one position."""
+
+    def rewrite(match):
+        if int(match[2]) != number:
+            return match[0]
+        joints = [float(value) for _, value in JOINT.findall(match[3])]
+        changed = iter(change(joints))
+        body = JOINT.sub(lambda one: f"J{one[1]}={next(changed):10.3f} deg", match[3])
+        return match[1] + body + match[4]
+
+    return POSITION.sub(rewrite, text)
+
+
+def test_the_written_program_passes(written):
+    result, text = written
+    assert failed(result.problem, text) == set()
+
+
+@pytest.mark.parametrize("joint", range(6))
+def test_a_joint_off_by_a_fiftieth_of_a_degree_leaves_the_path(written, joint):
+    result, text = written
+
+    def off(joints):
+        return [value + 0.02 * (index == joint) for index, value in enumerate(joints)]
+
+    assert failed(result.problem, change_joints(text, 7, off)) & {
+        "path position", "spin range", "lead range",
+    }
+
+
+def test_coupling_left_out_leaves_the_path(written):
+    result, text = written
+    for number in range(1, 51):
+        text = change_joints(text, number, lambda j: [j[0], j[1], j[2] + j[1], *j[3:]])
+    assert "path position" in failed(result.problem, text)
+
+
+def test_swapped_positions_leave_the_path(written):
+    result, text = written
+    swapped = text.replace("J P[10] ", "J P[99] ").replace("J P[30] ", "J P[10] ")
+    assert "path position" in failed(result.problem, swapped.replace("J P[99] ", "J P[30] "))
+
+
+def test_a_lost_position_is_counted(written):
+    result, text = written
+    lines = text.split("\r\n")
+    kept = [line for line in lines if "J P[50] " not in line]
+    assert "position count" in failed(result.problem, "\r\n".join(kept))
+
+
+def test_a_moved_beam_is_noticed(written):
+    result, text = written
+    problem = result.problem
+    moved = rigid(position=(0.0, 0.0, 0.005)) @ problem.workpiece.placement
+    workpiece = replace(problem.workpiece, placement=moved)
+    assert "path position" in failed(replace(problem, workpiece=workpiece), text)
+
+
+def test_a_longer_tool_is_noticed(written):
+    result, text = written
+    tool = result.problem.tool
+    longer = replace(tool, tcp=tool.tcp @ rigid(position=(0.0, 0.0, 0.001)))
+    assert "path position" in failed(replace(result.problem, tool=longer), text)
+
+
+def test_another_frame_or_tool_number_is_noticed(written):
+    result, text = written
+    assert "frame and tool numbers" in failed(result.problem, text.replace("UT : 1", "UT : 2"))
+    other = text.replace("UTOOL_NUM=1", "UTOOL_NUM=2")
+    assert "program flow" in failed(result.problem, other)
+
+
+def test_a_renamed_program_is_noticed(written):
+    result, text = written
+    assert failed(result.problem, text, "OTHER.LS") == {"program name"}
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("J P[20] ", "L P[20] "),
+        ("!verify in T1", "JMP LBL[1]"),
+        ("!verify in T1", "R[1]=5"),
+    ],
+)
+def test_what_the_checks_cannot_follow_fails(written, old, new):
+    result, text = written
+    if new.startswith("L"):
+        line = next(line for line in text.split("\r\n") if "J P[20] " in line)
+        text = text.replace(line, re.sub(r"J P\[20\] \S+", "L P[20] 20mm/sec", line))
+    else:
+        text = text.replace(old, new)
+    assert failed(result.problem, text) == {"program flow"}
+
+
+def test_a_motion_option_fails(written):
+    result, text = written
+    line = next(line for line in text.split("\r\n") if "J P[20] " in line)
+    changed = line.replace("CNT100", "CNT100 Offset,PR[1]")
+    assert failed(result.problem, text.replace(line, changed)) == {"program flow"}
+
+
+def test_less_clearance_than_asked_fails(written):
+    result, text = written
+    assert failed(result.problem, text, least=50.5 * MM) == {"clearance"}
+
+
+def test_a_narrower_joint_window_fails(written):
+    result, text = written
+    windows = result.problem.robot.limits.copy()
+    windows[1, 1] = result.sequence.pendant[:, 1].max() - 0.01
+    assert failed(replace(result.problem, joint_windows=windows), text) == {"joint limits"}
+
+
+def test_a_fixture_in_the_way_fails(written):
+    result, text = written
+    fixture = replace(result.problem.fixtures[-1], pose=result.problem.workpiece.placement)
+    problem = replace(result.problem, fixtures=(*result.problem.fixtures, fixture))
+    assert "clearance" in failed(problem, text)
+
+
+def test_nothing_is_written_when_a_check_fails_after_reading_back(written, tmp_path, monkeypatch):
+    import solver.pipeline.programming as programming
+    from solver.analysis.program_check import Check
+    from solver.errors import RefusedError
+
+    result, _ = written
+    broken = Check("clearance", False, 49.9, 50.0, "mm")
+    monkeypatch.setattr(programming, "check_program", lambda *_: (broken,))
+    with pytest.raises(RefusedError, match="clearance"):
+        write_program(result, tmp_path / "X.LS")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_move_with_an_event_ends_fine(written):
+    result, _ = written
+    problem = result.problem
+    one = problem.toolpath.passes[0]
+    event = Event(EventKind.DWELL, value=0.5)
+    toolpath = problem.toolpath.with_passes((replace(one, events={20: (event,)}),))
+    program = build_program(replace(result, problem=replace(problem, toolpath=toolpath)))
+    assert program.moves[20].cnt is None
+    assert program.moves[20].events == (event,)
+    assert program.moves[19].cnt == 100
+
+
+def test_moves_take_the_time_of_their_distance_at_the_feed(written):
+    result, _ = written
+    program = build_program(result)
+    positions = result.problem.toolpath.poses[:, :3, 3]
+    distance = np.linalg.norm(np.diff(positions, axis=0), axis=1)
+    durations = [move.duration for move in program.moves[1:]]
+    assert np.allclose(durations, distance / result.problem.toolpath.passes[0].feed)
+    assert program.moves[0].percent == result.problem.program.approach_percent
+
+
+def test_the_program_says_where_it_comes_from(written):
+    _, text = written
+    assert "!CELL groove_hw300 ;" in text
+    assert "!BEAM HW300 ;" in text
+    assert not re.search(r"\b20[2-9]\d-", text)
+    assert Path("GROOVE.LS").stem in text.splitlines()[0]
