@@ -72,7 +72,7 @@ def overlap(a, vertices_a, r, t, b, vertices_b, hint):
         _, u, pa, pb, _ = gjk(a, vertices_a, r, apart, b, vertices_b, n, math.inf)
         pa = minus(pa, scaled(draw, n))
         gap = separation(a, vertices_a, r, t, b, vertices_b, u)
-        if gap <= best + 1e-9:
+        if not gap > best + 1e-9:
             break
         best, n = gap, u
     return best, n, pa, pb

@@ -241,13 +241,11 @@ def representatives(
 
     Order: ascending in J1, then J2, ... then J6, so J6 runs fastest. A value may lie outside a
     limit by `LIMIT_TOLERANCE`. With `principal_only`, only the representative with every joint
-    in (-pi, pi], if it lies inside the limits. Returns the count; -1, with nothing written,
-    when `out` has too few rows (`solver.kinematics.arm.representative_capacity` tells how many
-    suffice) or an angle is not finite or beyond `ANGLE_BOUND`.
+    in (-pi, pi], if it lies inside the limits. Returns the count; -1 when `out` has
+    too few rows (`solver.kinematics.arm.representative_capacity` tells how many suffice) or an
+    angle is not finite or beyond `ANGLE_BOUND`; the rows of `out` then mean nothing.
     """
-    first = np.empty(6)
-    counts = np.empty(6, np.int64)
-    total = 1.0
+    count = 1
     for joint in range(6):
         low = limits[joint, 0] - LIMIT_TOLERANCE
         high = limits[joint, 1] + LIMIT_TOLERANCE
@@ -255,12 +253,12 @@ def representatives(
         # Written so that a NaN is refused.
         if not (abs(low) < ANGLE_BOUND and abs(high) < ANGLE_BOUND and abs(value) < ANGLE_BOUND):
             return -1
+        lowest = 0.0
         if principal_only:
             value -= TURN * math.ceil((value - math.pi) / TURN)
             if value <= -math.pi:
                 value += TURN
-            first[joint] = value
-            counts[joint] = 1 if low <= value <= high else 0
+            turns = 1 if low <= value <= high else 0
         else:
             # One turn too early, then up to the limit: the quotient's rounding cannot cost one.
             turn = math.floor((low - value) / TURN)
@@ -269,21 +267,19 @@ def representatives(
             lowest = turn
             while value + TURN * turn <= high:
                 turn += 1.0
-            first[joint] = lowest
-            counts[joint] = int(turn - lowest)
-        total *= counts[joint]
-    if total > out.shape[0]:
-        return -1
-    count = int(total)
-    for row in range(count):
-        rest = row
-        for joint in range(5, -1, -1):
-            turn = rest % counts[joint]
-            rest //= counts[joint]
-            if principal_only:
-                out[row, joint] = first[joint]
-            else:
-                out[row, joint] = pendant[joint] + TURN * (first[joint] + turn)
+            turns = int(turn - lowest)
+        if turns == 0:
+            return 0
+        if count * turns > out.shape[0]:
+            return -1
+        # Every row so far becomes `turns` rows, from the last one backwards, in place.
+        for row in range(count - 1, -1, -1):
+            for k in range(turns - 1, -1, -1):
+                target = row * turns + k
+                for done in range(joint):
+                    out[target, done] = out[row, done]
+                out[target, joint] = value + TURN * (lowest + k)
+        count *= turns
     return count
 
 
