@@ -9,6 +9,7 @@ import numpy as np
 
 from solver.candidates.explain import Explanation, explain
 from solver.candidates.generate import CandidateSet
+from solver.candidates.margins import FilterMargin
 from solver.candidates.outcomes import Outcome
 from solver.errors import PlanningError
 from solver.search.graph import LayeredGraph
@@ -20,18 +21,17 @@ from solver.units import DEG_PER_RAD
 class EmptyLayer:
     """A waypoint without any feasible candidate.
 
-    `rejected` counts the branch candidates by the filter that rejected them; `nearest` is the
-    candidate that came closest to passing the filter that rejected most of those that got
-    furthest.
+    `rejected` counts the branch candidates by the filter that rejected them; `nearest` is,
+    among those that got furthest, the candidate that misses its filter `missed` by least.
     """
 
     waypoint: int
     rejected: Mapping[Outcome, int]
     nearest: Explanation
+    missed: FilterMargin
 
     def __str__(self) -> str:
-        failed = [one for one in self.nearest.filters if not one.passed]
-        worst = min(failed, key=lambda one: one.margin)
+        worst = self.missed
         counts = ", ".join(f"{count} {kind.label}" for kind, count in self.rejected.items())
         return (
             f"waypoint {self.waypoint + 1} has no feasible pose ({counts}); nearest is lean "
@@ -50,10 +50,20 @@ class InfeasiblePathError(PlanningError):
             advice = "try a wider lean range, all branches, or another place of the beam"
             message = f"no sequence: {empty[0]}{more}; {advice}"
         elif cut is not None:
-            message = f"no sequence: {cut}; try a finer path, a lower feed or wider step limits"
+            message = f"no sequence: {_cut_words(cut)}; try a finer path, a lower feed or wider step limits"
         else:
             message = "no sequence under the asked clearance; try a smaller safety distance"
         super().__init__(message)
+
+
+def _cut_words(cut: Cut) -> str:
+    first = cut.gaps[0]
+    what = "the lean" if first.joint is None else f"J{first.joint}"
+    return (
+        f"from waypoint {first.gap + 1} to {first.gap + 2} {what} would have to step by "
+        f"{first.step * DEG_PER_RAD:.3g} deg or more, where {first.limit * DEG_PER_RAD:.3g} deg "
+        f"are allowed ({len(cut.gaps)} such gaps)"
+    )
 
 
 def no_sequence(
@@ -85,9 +95,12 @@ def _empty_layer(candidates: CandidateSet, waypoint: int) -> EmptyLayer:
         )
         for o, slot in tried[:: max(1, len(tried) // 200)]
     )
-    return EmptyLayer(waypoint, rejected, max(explanations, key=_least_margin))
+    nearest = max(explanations, key=lambda one: _missed(one, furthest).margin)
+    return EmptyLayer(waypoint, rejected, nearest, _missed(nearest, furthest))
 
 
-def _least_margin(explanation: Explanation) -> float:
-    """The worst margin among the failed filters, for comparing candidates of one outcome."""
-    return min((one.margin for one in explanation.filters if not one.passed), default=0.0)
+def _missed(explanation: Explanation, furthest: Outcome) -> FilterMargin:
+    """The failed filter of the stage that was reached; collisions of all kinds are one stage."""
+    failed = [one for one in explanation.filters if not one.passed]
+    of_stage = [one for one in failed if one.filter == furthest]
+    return min(of_stage or failed, key=lambda one: one.margin)

@@ -14,7 +14,7 @@ from numba import njit
 
 from solver.transforms import FloatArray, IntArray
 
-TILE = 32
+TILE = 128
 STEP_ROW = 6
 LEAN_ROW = 12
 BEST_ROW = 13

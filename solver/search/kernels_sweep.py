@@ -31,8 +31,10 @@ from solver.search.kernels_edges import (
 )
 from solver.transforms import FloatArray, IntArray
 
-FEWEST = 16
 KEYS = 64
+FINE = 32
+FEWEST = 16
+COARSE_GAPS = 8
 
 
 class Clusters(NamedTuple):
@@ -53,7 +55,7 @@ class Clusters(NamedTuple):
 @njit(cache=True, nogil=True)
 def empty_clusters(size: int) -> Clusters:
     """Room for the clusters of up to `size` nodes."""
-    most = size // FEWEST + size // TILE + 2
+    most = size // FEWEST + size // FINE + 2
     return Clusters(
         np.empty(size, dtype=np.int64),
         np.zeros(most + 1, dtype=np.int64),
@@ -77,7 +79,7 @@ def fill_clusters(graph: GraphArrays, clusters: int, out: Clusters) -> None:
         for i in range(out.first[cluster], out.first[cluster + 1]):
             node = out.order[i]
             for joint in range(6):
-                out.rows[i, joint] = graph.joints[node, joint] / graph.ranges[joint]
+                out.rows[i, joint] = graph.joints[node, joint] * graph.ranges[joint]
             if len(graph.steps) > 0:
                 for joint in range(6):
                     out.rows[i, STEP_ROW + joint] = graph.steps[node, joint]
@@ -90,12 +92,14 @@ def fill_clusters(graph: GraphArrays, clusters: int, out: Clusters) -> None:
 
 @njit(cache=True, nogil=True)
 def cluster_nodes(
-    graph: GraphArrays, middle: FloatArray, start: int, stop: int, out: Clusters
+    graph: GraphArrays, middle: FloatArray, start: int, stop: int, coarse: bool, out: Clusters
 ) -> int:
     """Sort the nodes start..stop-1 by which joints exceed `middle`, and cut them into clusters.
 
-    A cluster holds at most a tile, small ones are joined; returns the number of clusters.
+    Large clusters are cut and small ones joined; a coarse one fills a tile. Returns their number.
     """
+    fewest = TILE if coarse else FEWEST
+    largest = TILE if coarse else FINE
     counts = np.zeros(KEYS + 1, dtype=np.int64)
     count = stop - start
     keys = np.empty(count, dtype=np.int64)
@@ -111,9 +115,9 @@ def cluster_nodes(
     begin = 0
     for key in range(KEYS):
         end = counts[key + 1]
-        if end - begin < FEWEST and end < count:
+        if end - begin < fewest and end < count:
             continue
-        pieces = (end - begin + TILE - 1) // TILE
+        pieces = (end - begin + largest - 1) // largest
         for piece in range(pieces):
             out.first[clusters] = begin + (end - begin) * piece // pieces
             out.key[clusters] = key
@@ -180,17 +184,18 @@ def relax_cluster(
     metric: int,
     limits: FloatArray,
     bounded: bool,
-) -> None:
+) -> int:
     """Fill the tile with a target cluster and relax it from every source cluster that matters.
 
     `least` holds the least value of each source cluster. The cluster `guess` comes first: the
-    lower its costs, the more of the others are skipped.
+    lower its costs, the more of the others are skipped. Returns how many were not.
     """
     begin = targets.first[target]
     count = targets.first[target + 1] - begin
     width = LEAN_ROW + 1 if bounded else 6
     padded = fill_tile(tile, targets.rows, begin, begin + count, width)
     worst = INFINITE
+    done = 0
     for turn in range(len(least) + 1):
         source = guess if turn == 0 else turn - 1
         if least[source] >= worst or (turn > 0 and source == guess):
@@ -202,9 +207,13 @@ def relax_cluster(
             relax(tile, padded, sources.rows, values, low, high, weight, metric)
         elif boxes_allow(limits, sources, source, targets, target):
             relax_bounded(tile, padded, sources.rows, values, low, high, weight, metric, limits)
+        else:
+            continue
+        done += 1
         worst = -INFINITE
         for j in range(count):
             worst = max(worst, tile[BEST_ROW * TILE + j])
+    return done
 
 
 @njit(cache=True, nogil=True)
@@ -237,13 +246,14 @@ def sweep(
     sources, targets = empty_clusters(size), empty_clusters(size)
     source_values, least = np.empty(size), np.empty(len(sources.key))
     layer = gap_first if forward else gap_first + 1
-    source_count = cluster_nodes(graph, middle, offsets[layer], offsets[layer + 1], sources)
+    coarse = 0
+    source_count = cluster_nodes(graph, middle, offsets[layer], offsets[layer + 1], False, sources)
     for index in range(gap_count):
         gap = gap_first + index if forward else gap_first - index
         layer = gap + 1 if forward else gap
         begin = offsets[layer] + piece_low
         end = min(offsets[layer] + piece_high, offsets[layer + 1])
-        target_count = cluster_nodes(graph, middle, begin, end, targets)
+        target_count = cluster_nodes(graph, middle, begin, end, coarse > 0, targets)
         for cluster in range(source_count):
             least[cluster] = INFINITE
             for i in range(sources.first[cluster], sources.first[cluster + 1]):
@@ -254,13 +264,14 @@ def sweep(
         limits = gap_limits(gap, graph.step_limits, graph.lean_limits)
         bounded = limits.min() < INFINITE
         guess = 0
+        done = 0
         for target in range(target_count):
             while guess + 1 < source_count and sources.key[guess + 1] <= targets.key[target]:
                 guess += 1
             if source_count == 0:
                 tile[BEST_ROW * TILE :] = INFINITE
             else:
-                relax_cluster(
+                done += relax_cluster(
                     tile,
                     sources,
                     source_values,
@@ -280,6 +291,10 @@ def sweep(
                     values[node] = max(best, graph.node_cost[node])
                 else:
                     values[node] = best + graph.node_cost[node] if forward else best
+        # Where hardly any cluster can be skipped, large ones cost less; look again now and then.
+        coarse -= 1
+        if coarse <= 0 and 2 * done > source_count * target_count:
+            coarse = COARSE_GAPS
         sources, targets = targets, sources
         source_count = target_count
 
@@ -318,7 +333,7 @@ def first_path(
             if layer > 0:
                 d = 0.0
                 for joint in range(6):
-                    change = graph.joints[node, joint] / graph.ranges[joint] - point[joint]
+                    change = graph.joints[node, joint] * graph.ranges[joint] - point[joint]
                     d += abs(change) if metric == ABSOLUTE else change * change
                     # Partial sums only grow: a node that is over already cannot be chosen.
                     reached = (spent + weight * d) + graph.node_cost[node]

@@ -154,19 +154,27 @@ def test_a_body_wholly_inside_a_mesh_overlaps(shape):
 
 @pytest.mark.parametrize(
     "shape",
-    [Sphere(1.0), Capsule(1.0, 0.2), Cylinder(2.0, 3.0), Box(np.full(3, 2.0))],
+    [
+        Sphere(2.0),
+        Capsule(2.0, 0.2),
+        Cylinder(2.0, 3.0),
+        Box(np.full(3, 4.0)),
+        Hull(2.0 * np.array(np.meshgrid((-1, 1), (-1, 1), (-1, 1))).reshape(3, 8).T),
+    ],
     ids=lambda shape: type(shape).__name__,
 )
-def test_a_mesh_wholly_inside_a_body_overlaps(shape):
-    found = mesh_clearance(ConvexProxy(shape), at(0.05, 0.02, 0.03), unit_box_obstacle())
-    assert found.distance < 0.0
+@pytest.mark.parametrize("x", [0.05, 0.9])
+def test_a_mesh_wholly_inside_a_body_overlaps_wherever_it_lies(shape, x):
+    found = mesh_clearance(ConvexProxy(shape), at(x, 0.02, 0.03), unit_box_obstacle())
+    assert found.distance < -0.5
 
 
 def test_one_of_several_bodies_of_a_mesh_inside_a_convex_body_is_found():
     vertices, faces = box_triangles(np.ones(3))
     small = 0.1 * vertices + np.array([5.0, 0.0, 0.0])
     both = Mesh(np.vstack([vertices, small]), np.vstack([faces, faces + 8]))
-    found = mesh_clearance(ConvexProxy(Box(np.ones(3))), at(5.0), MeshObstacle(both, np.eye(4)))
+    obstacle = MeshObstacle(both, np.eye(4))
+    found = mesh_clearance(ConvexProxy(Box(np.ones(3))), at(5.3), obstacle)
     assert found.distance < 0.0
 
 
@@ -238,6 +246,30 @@ def test_many_poses_give_the_clearance_below_the_cutoff_and_a_bound_above_it():
     assert (found <= true + 1e-12).all()
     assert np.array_equal(found[true <= 0.2], true[true <= 0.2])
     assert (found[true > 0.2] > 0.2).all()
+
+
+def test_triangles_without_area_change_no_distance():
+    vertices, faces = box_triangles(np.ones(3))
+    rng = np.random.default_rng(8)
+    proxy, plain = ConvexProxy(Box(np.full(3, 0.2))), unit_box_obstacle()
+    # every edge of the first triangle gets a vertex, and a triangle without area to close it
+    a, b, c = faces[0]
+    middles = 0.5 * (vertices[[a, b, c]] + vertices[[b, c, a]])
+    p, q, r = range(len(vertices), len(vertices) + 3)
+    caps = [[a, b, p], [b, c, q], [c, a, r]]
+    split = [[a, p, r], [p, b, q], [r, q, c], [p, q, r]]
+    closing = [[x, m, y] for (x, y, m) in caps]
+    faces = np.vstack([faces[1:], split, [cap[::-1] for cap in closing]])
+    capped = MeshObstacle(Mesh(np.vstack([vertices, middles]), faces), np.eye(4))
+    assert len(capped.mesh.faces) == 11 + 4 + 3
+    for _ in range(200):
+        pose = random_pose(rng, 1.5, square=bool(rng.integers(2)))
+        expected = mesh_clearance(proxy, pose, plain)
+        found = mesh_clearance(proxy, pose, capped)
+        if expected.distance > 0.0:
+            assert found.distance == pytest.approx(expected.distance, abs=1e-9)
+        else:
+            assert found.distance <= 0.0
 
 
 def test_moving_both_bodies_together_keeps_the_clearance():

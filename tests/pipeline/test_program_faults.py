@@ -59,7 +59,9 @@ def test_a_joint_off_by_a_fiftieth_of_a_degree_leaves_the_path(written, joint):
         return [value + 0.02 * (index == joint) for index, value in enumerate(joints)]
 
     assert failed(result.problem, change_joints(text, 7, off)) & {
-        "path position", "spin range", "lead range",
+        "path position",
+        "spin range",
+        "lead range",
     }
 
 
@@ -155,9 +157,9 @@ def test_a_fixture_in_the_way_fails(written):
 
 
 def test_nothing_is_written_when_a_check_fails_after_reading_back(written, tmp_path, monkeypatch):
-    import solver.pipeline.programming as programming
     from solver.analysis.program_check import Check
     from solver.errors import RefusedError
+    from solver.pipeline import programming
 
     result, _ = written
     broken = Check("clearance", False, 49.9, 50.0, "mm")
