@@ -18,6 +18,10 @@ class Monitor(Protocol):
         """Whether the computation should stop; asked at least every 20 ms."""
 
 
+COMPILING = "compiling"
+"""Stage that is reported when kernels have to be compiled, which happens once."""
+
+
 class SilentMonitor:
     """A monitor that shows nothing and never cancels."""
 

@@ -50,7 +50,8 @@ class InfeasiblePathError(PlanningError):
             advice = "try a wider lean range, all branches, or another place of the beam"
             message = f"no sequence: {empty[0]}{more}; {advice}"
         elif cut is not None:
-            message = f"no sequence: {_cut_words(cut)}; try a finer path, a lower feed or wider step limits"
+            advice = "try a finer path, a lower feed or wider step limits"
+            message = f"no sequence: {_cut_words(cut)}; {advice}"
         else:
             message = "no sequence under the asked clearance; try a smaller safety distance"
         super().__init__(message)

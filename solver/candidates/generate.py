@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,7 @@ from solver.errors import ModelError
 from solver.kinematics.arm import representative_capacity
 from solver.model.problem import PlanningProblem
 from solver.model.settings import PlanningSettings, Turns
-from solver.progress import Monitor, SilentMonitor, checkpoint
+from solver.progress import COMPILING, Monitor, SilentMonitor, checkpoint
 from solver.transforms import (
     FloatArray,
     IntArray,
@@ -94,6 +95,19 @@ class CandidateSet:
         return lean
 
 
+def kernels_are_cached() -> bool:
+    """Whether the compiled kernels are at hand, so that the first call does not compile them.
+
+    A cache older than the kernels' sources is stale, and numba compiles again.
+    """
+    if evaluate_poses.signatures:
+        return True
+    folder = Path(evaluate_poses.stats.cache_path)
+    found = [one.stat().st_mtime for one in folder.glob("kernels_candidates.evaluate_poses-*.nbi")]
+    source = Path(__file__).with_name("kernels_candidates.py").stat().st_mtime
+    return bool(found) and max(found) >= source
+
+
 def orientations(settings: PlanningSettings) -> FloatArray:
     """(o, 3) lean, lead and spin of all orientations, lean slowest [rad]."""
     grid = np.meshgrid(
@@ -124,6 +138,8 @@ def generate(problem: PlanningProblem, monitor: Monitor | None = None) -> Candid
     """Solve and filter every candidate of the problem."""
     monitor = monitor or SilentMonitor()
     settings = problem.settings
+    if not kernels_are_cached():
+        monitor.report(COMPILING, 0, 1)
     scene = build_scene(problem)
     angles = orientations(settings)
     branches = np.array(settings.branches, np.int64)

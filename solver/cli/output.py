@@ -14,10 +14,12 @@ import numpy as np
 
 from solver.errors import PosoptError
 from solver.io.atomic import write_atomically
+from solver.progress import COMPILING
 
 _BAR = 28
 _FIRST_SHOWN = 0.5
 _INTERVAL = 0.1
+_COMPILING_NOTE = "compiling the kernels; this takes a minute, once after an installation or update"
 
 
 class TerminalMonitor:
@@ -30,6 +32,9 @@ class TerminalMonitor:
 
     def report(self, stage: str, done: int, total: int) -> None:
         """Draw the bar, at most ten times a second."""
+        if stage == COMPILING:
+            print(_COMPILING_NOTE, file=sys.stderr, flush=True)
+            return
         now = time.monotonic()
         if not self._shown or now - self._started < _FIRST_SHOWN or now - self._last < _INTERVAL:
             return

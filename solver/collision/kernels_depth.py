@@ -10,10 +10,13 @@ import math
 
 from numba import njit
 
-from solver.collision.kernels_gjk import gjk, separation
-from solver.collision.kernels_shapes import dot, minus, norm, scaled
+from solver.collision.kernels_gjk import GAP, gjk, separation
+from solver.collision.kernels_shapes import HULL, dot, minus, norm, placed, scaled
 
 IMPROVEMENTS = 8
+
+SLACK = 1e-4
+"""How far apart cores are drawn: enough for a precise direction, little next to any radius [m]."""
 
 
 @njit(cache=True, nogil=True)
@@ -49,6 +52,40 @@ def _direction(number, r, t, hint):
 
 
 @njit(cache=True, nogil=True)
+def refined(a, vertices_a, r, t, b, vertices_b, best, n):
+    """Improve a direction n of signed gap `best`; returns (gap, n, point of A, point of B).
+
+    Drawn apart along n until they are well separated, the cores have a direction between their
+    nearest points whose gap is no smaller than that of n. Once it is n itself, the points drawn
+    back are as far apart as the gap, and no direction next to n has a larger one.
+    """
+    pa, pb = t, t
+    for _ in range(IMPROVEMENTS):
+        draw = SLACK - 1.5 * min(best, 0.0)
+        apart = (t[0] + draw * n[0], t[1] + draw * n[1], t[2] + draw * n[2])
+        _, u, pa, pb, _ = gjk(a, vertices_a, r, apart, b, vertices_b, n, math.inf)
+        pa = minus(pa, scaled(draw, n))
+        gap = separation(a, vertices_a, r, t, b, vertices_b, u)
+        if not gap > best + GAP:
+            break
+        best, n = gap, u
+    return best, n, pa, pb
+
+
+@njit(cache=True, nogil=True)
+def _middle(body, vertices):
+    """Mean of a hull's vertices, the origin of every other kind."""
+    x, y, z = 0.0, 0.0, 0.0
+    if body[0] == HULL:
+        share = 1.0 / (body[5] - body[4])
+        for i in range(body[4], body[5]):
+            x += share * vertices[i, 0]
+            y += share * vertices[i, 1]
+            z += share * vertices[i, 2]
+    return x, y, z
+
+
+@njit(cache=True, nogil=True)
 def overlap(a, vertices_a, r, t, b, vertices_b, hint):
     """Best signed gap found, its unit direction from B to A, and the deepest points of A and B."""
     best, n = -math.inf, (0.0, 0.0, 1.0)
@@ -62,17 +99,16 @@ def overlap(a, vertices_a, r, t, b, vertices_b, hint):
             gap = separation(a, vertices_a, r, t, b, vertices_b, u)
             if gap > best:
                 best, n = gap, u
-    # Drawn apart along n by more than the overlap, the bodies are separated; the direction
-    # between their nearest points then overlaps by no more than n does, and once it is n
-    # itself those points, drawn back, are the deepest ones.
-    pa, pb = t, t
-    for _ in range(IMPROVEMENTS):
-        draw = 1e-6 - 1.5 * best
-        apart = (t[0] + draw * n[0], t[1] + draw * n[1], t[2] + draw * n[2])
-        _, u, pa, pb, _ = gjk(a, vertices_a, r, apart, b, vertices_b, n, math.inf)
-        pa = minus(pa, scaled(draw, n))
-        gap = separation(a, vertices_a, r, t, b, vertices_b, u)
-        if not gap > best + 1e-9:
-            break
-        best, n = gap, u
+    best, n, pa, pb = refined(a, vertices_a, r, t, b, vertices_b, best, n)
+    if b[0] == HULL:
+        # the faces of a hull are no candidates: try what the search and the middles suggest
+        middles = minus(placed(r, t, _middle(a, vertices_a)), _middle(b, vertices_b))
+        for d in (hint, middles):
+            length = norm(d)
+            if length > 1e-9:
+                u = scaled(1.0 / length, d)
+                gap = separation(a, vertices_a, r, t, b, vertices_b, u)
+                gap, u, qa, qb = refined(a, vertices_a, r, t, b, vertices_b, gap, u)
+                if gap > best:
+                    best, n, pa, pb = gap, u, qa, qb
     return best, n, pa, pb

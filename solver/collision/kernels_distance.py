@@ -17,7 +17,7 @@ from solver.collision.kernels_closed import (
     segment_to_box,
     segment_to_segment,
 )
-from solver.collision.kernels_depth import overlap
+from solver.collision.kernels_depth import overlap, refined
 from solver.collision.kernels_gjk import GAP, TOUCH, gjk
 from solver.collision.kernels_shapes import (
     BOX,
@@ -42,6 +42,9 @@ from solver.collision.kernels_shapes import (
 )
 
 __all__ = ["convex_distance", "numbers_distance", "quick_lower_bound", "row_distance"]
+
+STALLED = 1e-8
+"""A bracket wider than this says that rounding stopped the search early [m]."""
 
 UNDECIDED, SEPARATED, OVERLAPPING = 0, 1, 2
 
@@ -134,6 +137,8 @@ def _searched(a, vertices_a, r, t, b, vertices_b, verdict, n, cutoff, wants_dept
     if not overlapping:
         bound, n, pa, pb, overlapping = gjk(a, vertices_a, r, t, b, vertices_b, n, cutoff)
         if bound > 0.0:
+            if bound <= cutoff and norm(minus(pa, pb)) > bound + STALLED:
+                return refined(a, vertices_a, r, t, b, vertices_b, bound, n)
             return bound, n, pa, pb
     if overlapping and not wants_depth:
         return -TOUCH, n, t, t

@@ -79,7 +79,7 @@ def fill_clusters(graph: GraphArrays, clusters: int, out: Clusters) -> None:
         for i in range(out.first[cluster], out.first[cluster + 1]):
             node = out.order[i]
             for joint in range(6):
-                out.rows[i, joint] = graph.joints[node, joint] * graph.ranges[joint]
+                out.rows[i, joint] = graph.joints[node, joint] / graph.ranges[joint]
             if len(graph.steps) > 0:
                 for joint in range(6):
                     out.rows[i, STEP_ROW + joint] = graph.steps[node, joint]
@@ -333,7 +333,7 @@ def first_path(
             if layer > 0:
                 d = 0.0
                 for joint in range(6):
-                    change = graph.joints[node, joint] * graph.ranges[joint] - point[joint]
+                    change = graph.joints[node, joint] / graph.ranges[joint] - point[joint]
                     d += abs(change) if metric == ABSOLUTE else change * change
                     # Partial sums only grow: a node that is over already cannot be chosen.
                     reached = (spent + weight * d) + graph.node_cost[node]

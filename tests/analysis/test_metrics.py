@@ -1,3 +1,4 @@
+import itertools
 import math
 import statistics
 
@@ -18,7 +19,7 @@ def test_measures_equal_their_definitions_in_plain_python(joints):
     found = joint_motion(joints)
     for joint in range(6):
         column = joints[:, joint].tolist()
-        steps = [abs(b - a) for a, b in zip(column, column[1:], strict=False)]
+        steps = [abs(b - a) for a, b in itertools.pairwise(column)]
         assert found.variation[joint] == pytest.approx(math.fsum(steps), abs=1e-12)
         assert found.amplitude[joint] == max(column) - min(column)
         assert found.deviation[joint] == pytest.approx(statistics.pstdev(column), abs=1e-9)

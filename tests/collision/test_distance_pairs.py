@@ -99,6 +99,24 @@ def test_nearest_points_lie_on_the_bodies_as_far_apart_as_stated(kinds, aligned)
         assert outside(body.rows(apart), witnesses[apart, row]).max() < 1e-9
 
 
+@by_placement
+@by_pair
+def test_pairs_brought_together_along_their_nearest_points_keep_what_is_left(kinds, aligned):
+    bodies_a, bodies_b = random_pairs(kinds, 200, 5, aligned=aligned)
+    found, witnesses = kernel_distances(bodies_a, bodies_b)
+    apart = np.flatnonzero(found > 1e-3)
+    bodies_a, bodies_b = bodies_a.rows(apart), bodies_b.rows(apart)
+    way = witnesses[apart, 1] - witnesses[apart, 0]
+    length = np.linalg.norm(way, axis=1, keepdims=True)
+    left = 10.0 ** np.random.default_rng(6).uniform(-8.0, -3.0, (len(apart), 1))
+    near = bodies_a._replace(position=bodies_a.position + way * (1.0 - left / length))
+    found, _ = kernel_distances(near, bodies_b)
+    error = found - left[:, 0]
+    assert error.max() < 1e-8
+    assert error.min() > -TOLERANCE
+    assert (found[left[:, 0] > TOLERANCE] > 0.0).all()
+
+
 @pytest.mark.long
 @by_placement
 @by_pair

@@ -110,16 +110,26 @@ def check_against_numpy_and_scipy(seed, widest):
         assert graph.path_cost(result.path) == pytest.approx(result.cost, rel=1e-12)
 
 
-@pytest.mark.parametrize("size", [255, 256, 257, 600])
+@pytest.mark.parametrize("size", [127, 128, 129, 300, 500])
 @pytest.mark.parametrize("limits", [False, True])
-def test_layers_wider_than_a_tile_equal_numpy(size, limits):
+@pytest.mark.parametrize("squared", [False, True])
+@pytest.mark.parametrize("clustered", [False, True])
+def test_wide_layers_in_clusters_and_without_equal_numpy(size, limits, squared, clustered):
     random = np.random.default_rng(size)
-    clusters = random.uniform(-2.0, 2.0, (5, 6))
-    joints = np.repeat(clusters, 3 * size // 5 + 1, axis=0)[random.permutation(3 * size)]
-    joints = joints + random.normal(0.0, 0.05, joints.shape)
-    bounds = {"steps": joints, "step_limits": np.full((2, 6), 0.2)} if limits else {}
+    count = 4 * size
+    joints = random.uniform(-2.0, 2.0, (count, 6))
+    if clustered:
+        joints = random.permutation(np.repeat(joints[:9], count // 9 + 1, axis=0))[:count]
+        joints = joints + random.normal(0.0, 0.02, joints.shape)
+    bounds = {"steps": joints, "step_limits": np.full((3, 6), 2.0)} if limits else {}
     graph = LayeredGraph(
-        np.arange(4) * size, joints, np.full(6, 5.0), random.random(3 * size), np.ones(2), **bounds
+        np.arange(5) * size,
+        joints,
+        np.full(6, 5.0),
+        random.random(count),
+        np.ones(3),
+        squared=squared,
+        **bounds,
     )
     result = exact(graph)
     so_far, to_go = numpy_values(graph)

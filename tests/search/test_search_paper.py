@@ -117,7 +117,7 @@ def test_an_improved_open_node_is_pushed_again():
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_f1_and_f2_expand_as_the_plain_python_search_does(seed):
+def test_every_scheme_expands_as_the_plain_python_search_does(seed):
     random = np.random.default_rng(seed)
     count = 8 * 12
     graph = LayeredGraph(
@@ -135,6 +135,10 @@ def test_f1_and_f2_expand_as_the_plain_python_search_does(seed):
         assert result.path.tolist() == plain.path
         assert result.cost == pytest.approx(plain.cost, rel=1e-12)
         assert result.expanded == plain.expanded
+    result = f(graph)
+    plain, dijkstra_expanded = peer().plain_f(layers, graph.ranges.tolist())
+    assert result.path.tolist() == plain.path
+    assert (result.expanded, result.dijkstra_expanded) == (plain.expanded, dijkstra_expanded)
 
 
 @settings(max_examples=60, deadline=None)
