@@ -5,7 +5,8 @@ import math
 import numpy as np
 from numba import njit
 
-from solver.collision.kernels_distance import convex_distance, quick_lower_bound
+from solver.collision.kernels_bound import row_lower_bound
+from solver.collision.kernels_distance import row_distance
 
 FREE = 0
 HIT = 1
@@ -48,54 +49,54 @@ def pair_threshold(scene, m, f, touch):
 
 
 @njit(cache=True, nogil=True)
-def fixed_distance(scene, rotations, positions, m, f, witness):
-    """Certified distance of moving body m to fixed body f."""
-    moving, fixed = scene.moving, scene.fixed
-    return convex_distance(
-        moving.kind[m],
-        moving.size[m],
-        moving.vertices[moving.start[m] : moving.stop[m]],
-        rotations[m],
-        positions[m],
-        fixed.kind[f],
-        fixed.size[f],
-        fixed.vertices[fixed.start[f] : fixed.stop[f]],
-        fixed.rotation[f],
-        fixed.position[f],
+def fixed_distance(scene, rotations, positions, m, f, cutoff, wants_depth, witness):
+    """Certified distance of moving body m to fixed body f; only a bound above `cutoff`."""
+    return row_distance(
+        scene.moving,
+        rotations,
+        positions,
+        m,
+        scene.fixed,
+        scene.fixed.rotation,
+        scene.fixed.position,
+        f,
+        cutoff,
+        wants_depth,
         witness,
     )
 
 
 @njit(cache=True, nogil=True)
-def self_distance(scene, rotations, positions, a, b, witness):
-    """Certified distance of two moving bodies."""
-    moving = scene.moving
-    return convex_distance(
-        moving.kind[a],
-        moving.size[a],
-        moving.vertices[moving.start[a] : moving.stop[a]],
-        rotations[a],
-        positions[a],
-        moving.kind[b],
-        moving.size[b],
-        moving.vertices[moving.start[b] : moving.stop[b]],
-        rotations[b],
-        positions[b],
+def self_distance(scene, rotations, positions, a, b, cutoff, wants_depth, witness):
+    """Certified distance of two moving bodies; only a bound above `cutoff`."""
+    return row_distance(
+        scene.moving,
+        rotations,
+        positions,
+        a,
+        scene.moving,
+        rotations,
+        positions,
+        b,
+        cutoff,
+        wants_depth,
         witness,
     )
 
 
 @njit(cache=True, nogil=True)
 def _fixed_bound(scene, rotations, positions, m, f):
-    return quick_lower_bound(
-        scene.moving.kind[m],
-        scene.moving.size[m],
-        rotations[m],
-        positions[m],
-        scene.bound.kind[f],
-        scene.bound.size[f],
-        scene.bound.rotation[f],
-        scene.bound.position[f],
+    return row_lower_bound(
+        scene.moving.kind,
+        scene.moving.size,
+        rotations,
+        positions,
+        m,
+        scene.bound.kind,
+        scene.bound.size,
+        scene.bound.rotation,
+        scene.bound.position,
+        f,
     )
 
 
@@ -140,7 +141,8 @@ def check_bodies(scene, first, last, touch, best, rotations, positions, witness,
                 if rule == _CLEARANCE:
                     if _fixed_bound(scene, rotations, positions, m, f) >= best:
                         continue
-                    d = fixed_distance(scene, rotations, positions, m, f, witness)
+                    # The depth of an overlap does not matter: a hit is out in any case.
+                    d = fixed_distance(scene, rotations, positions, m, f, best, best < 0.0, witness)
                     if d < best:
                         best = d
                         nearest[0] = m
@@ -152,7 +154,9 @@ def check_bodies(scene, first, last, touch, best, rotations, positions, witness,
                     least = pair_threshold(scene, m, f, touch)
                     if _fixed_bound(scene, rotations, positions, m, f) > least:
                         continue
-                    if fixed_distance(scene, rotations, positions, m, f, witness) <= least:
+                    deep = least < 0.0
+                    d = fixed_distance(scene, rotations, positions, m, f, least, deep, witness)
+                    if d <= least:
                         return MARGIN_BROKEN, np.nan
     return FREE, best
 
@@ -168,19 +172,23 @@ def check_self(scene, rotations, positions, witness):
         spheres = scene.radius[a] + scene.radius[b] + scene.self_margin + ROUNDING
         if dx * dx + dy * dy + dz * dz > spheres * spheres:
             continue
-        bound = quick_lower_bound(
-            scene.moving.kind[a],
-            scene.moving.size[a],
-            rotations[a],
-            positions[a],
-            scene.moving.kind[b],
-            scene.moving.size[b],
-            rotations[b],
-            positions[b],
+        bound = row_lower_bound(
+            scene.moving.kind,
+            scene.moving.size,
+            rotations,
+            positions,
+            a,
+            scene.moving.kind,
+            scene.moving.size,
+            rotations,
+            positions,
+            b,
         )
-        if bound > scene.self_margin:
+        margin = scene.self_margin
+        if bound > margin:
             continue
-        if self_distance(scene, rotations, positions, a, b, witness) <= scene.self_margin:
+        deep = margin < 0.0  # never: that bodies overlap is enough to know
+        if self_distance(scene, rotations, positions, a, b, margin, deep, witness) <= margin:
             return SELF_BROKEN
     return FREE
 
@@ -211,11 +219,17 @@ def all_distances(scene, frames, rotations, positions, fixed, among, fixed_point
 
     Pairs without a rule are left as they are. Nothing stops early: this is for explanations.
     """
+    everything = np.inf
+    deep = everything > 0.0  # a plain bool: a literal True would compile all of this again
     place_bodies(scene, 0, scene.frame.shape[0], frames, rotations, positions)
     for m in range(scene.frame.shape[0]):
         for f in range(scene.rule.shape[1]):
             if scene.rule[m, f] != 0:
-                fixed[m, f] = fixed_distance(scene, rotations, positions, m, f, fixed_points[m, f])
+                fixed[m, f] = fixed_distance(
+                    scene, rotations, positions, m, f, everything, deep, fixed_points[m, f]
+                )
     for p in range(scene.self_pairs.shape[0]):
         a, b = scene.self_pairs[p, 0], scene.self_pairs[p, 1]
-        among[p] = self_distance(scene, rotations, positions, a, b, among_points[p])
+        among[p] = self_distance(
+            scene, rotations, positions, a, b, everything, deep, among_points[p]
+        )

@@ -1,1 +1,1 @@
-"""TODO search."""
+"""The layered graph of pose candidates and the searches through it."""

@@ -63,7 +63,7 @@ def exact(graph: LayeredGraph, monitor: Monitor | None = None) -> ExactResult:
     Raises
     ------
     Cancelled
-        If the monitor asks to stop; it is asked at least every 8 million edges.
+        If the monitor asks to stop; it is asked at least every 4 million edges.
     """
     last = graph.layer_count - 1
     progress = Progress(monitor or SilentMonitor(), 2 * total_work(graph, 0, last))

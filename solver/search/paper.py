@@ -28,7 +28,7 @@ from solver.transforms import FloatArray, IntArray
 HEURISTIC_WEIGHT = 0.9
 """The paper's lambda."""
 
-PIECE_WORK = 4_000_000
+PIECE_WORK = 1_000_000
 """Edges, pushes and distances between two checkpoints; under 20 ms on one core."""
 
 

@@ -15,7 +15,7 @@ from solver.transforms import FloatArray
 
 STAGE = "search"
 
-PIECE_EDGES = 8_000_000
+PIECE_EDGES = 4_000_000
 """Edges looked at between two checkpoints; under 20 ms on one core."""
 
 MIDDLE_SAMPLE = 512

@@ -1,7 +1,6 @@
 """What holds for any two bodies, however they stand."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -12,6 +11,7 @@ from hypothesis import strategies as st
 from solver.collision.distance import distance
 from solver.collision.kernels_bound import quick_lower_bound, row_lower_bound
 from solver.collision.kernels_distance import convex_distance, row_distance
+from solver.collision.scene import PackedBodies
 from solver.model.shapes import Box, Capsule, Cylinder, Hull, Sphere
 from solver.transforms import rigid, rotation_from_quaternion
 
@@ -39,19 +39,20 @@ poses = st.builds(
 )
 
 
-class PackedRows(NamedTuple):
-    kind: np.ndarray
-    size: np.ndarray
-    start: np.ndarray
-    stop: np.ndarray
-    vertices: np.ndarray
-
-
 def packed_rows(bodies):
     count, each = bodies.vertices.shape[:2]
     start = np.arange(count) * each
     kinds = np.full(count, bodies.kind)
-    return PackedRows(kinds, bodies.size, start, start + each, bodies.vertices.reshape(-1, 3))
+    # A type of the product: kernels remember the types they met, in their cache on disk.
+    return PackedBodies(
+        kinds,
+        bodies.size,
+        bodies.rotation,
+        bodies.position,
+        start,
+        start + each,
+        bodies.vertices.reshape(-1, 3),
+    )
 
 
 def random_pairs(kinds, count=60):
