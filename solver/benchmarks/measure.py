@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solver.benchmarks.plain_astar import plain_astar
-from solver.candidates.generate import CandidateSet, generate
+from solver.benchmarks.plain_astar import plain_astar, plain_f
+from solver.candidates.generate import generate
 from solver.candidates.outcomes import Outcome
 from solver.costs.penalty import safety_penalty
 from solver.io.importers import resample
@@ -19,6 +19,7 @@ from solver.model.problem import PlanningProblem
 from solver.model.settings import BRANCHES, Scheme
 from solver.pipeline.planning import exact_sequence, layered_graph, paper_sequence, plan
 from solver.progress import SilentMonitor
+from solver.search.exact import exact
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,13 +40,16 @@ class PlanTiming:
 
 @dataclass(frozen=True, slots=True)
 class PeerTiming:
-    """The search f2 against a plain Python A* of the paper on the same graph [s]."""
+    """Searches of one graph against a plain Python A* of the paper [s]."""
 
     cell: str
-    ours: float
+    nodes: int
     exact: float
-    plain: float
-    same_cost: bool
+    f: float
+    f2: float
+    plain_f: float
+    plain_f2: float
+    same_costs: bool
 
 
 def median_time(action: Callable[[], object], repeats: int) -> float:
@@ -96,28 +100,34 @@ def time_plan(problem: PlanningProblem, repeats: int) -> PlanTiming:
 
 
 def time_peer(problem: PlanningProblem, repeats: int) -> PeerTiming:
-    """Time f2 and exact against the plain Python A* on one graph."""
+    """Time exact, f and f2 against the plain Python A* on one graph.
+
+    `exact` searches the whole graph for the joint cost alone, as f does.
+    """
     candidates = generate(problem)
     graph = layered_graph(candidates)
+    free = replace(graph, node_cost=np.zeros(graph.node_count), squared=False)
     monitor = SilentMonitor()
-    ours = paper_sequence(candidates, graph, Scheme.F2, monitor)
-    found: list[float] = []
-    plain = median_time(lambda: found.append(_plain_cost(candidates)), max(1, repeats // 4))
+    nodes, settings = candidates.nodes, problem.settings
+    penalty = safety_penalty(nodes.clearance, settings.safety_distance)
+    layers = [nodes.model[a:b].tolist() for a, b in itertools.pairwise(nodes.offsets)]
+    penalties = [penalty[a:b].tolist() for a, b in itertools.pairwise(nodes.offsets)]
+    ranges = problem.robot.cost_ranges.tolist()
+    weight = settings.heuristic_weight
+    peer_f, _ = plain_f(layers, ranges, weight)
+    peer_f2 = plain_astar(layers, penalties, ranges, weight)
+    ours_f = paper_sequence(candidates, graph, Scheme.F, monitor)
+    ours_f2 = paper_sequence(candidates, graph, Scheme.F2, monitor)
+    same = abs(peer_f.cost - ours_f.cost) < 1e-9 and abs(peer_f2.cost - ours_f2.cost) < 1e-9
+    same = same and abs(exact(free).cost - peer_f.cost) < 1e-9
+    few = max(1, repeats // 4)
     return PeerTiming(
         cell=problem.name,
-        ours=median_time(lambda: paper_sequence(candidates, graph, Scheme.F2, monitor), repeats),
-        exact=median_time(lambda: exact_sequence(candidates, graph, monitor), repeats),
-        plain=plain,
-        same_cost=abs(found[-1] - ours.cost) <= 1e-9,
+        nodes=len(nodes),
+        exact=median_time(lambda: exact(free), repeats),
+        f=median_time(lambda: paper_sequence(candidates, graph, Scheme.F, monitor), repeats),
+        f2=median_time(lambda: paper_sequence(candidates, graph, Scheme.F2, monitor), repeats),
+        plain_f=median_time(lambda: plain_f(layers, ranges, weight), few),
+        plain_f2=median_time(lambda: plain_astar(layers, penalties, ranges, weight), few),
+        same_costs=same,
     )
-
-
-def _plain_cost(candidates: CandidateSet) -> float:
-    nodes, problem = candidates.nodes, candidates.problem
-    penalty = safety_penalty(nodes.clearance, problem.settings.safety_distance)
-    layers, costs = [], []
-    for first, last in itertools.pairwise(nodes.offsets):
-        layers.append(nodes.model[first:last].tolist())
-        costs.append(penalty[first:last].tolist())
-    ranges = problem.robot.cost_ranges.tolist()
-    return plain_astar(layers, costs, ranges, problem.settings.heuristic_weight).cost

@@ -27,11 +27,14 @@ def plain_astar(
     node_costs: Sequence[Sequence[float]],
     ranges: Joints,
     weight: float = 0.9,
+    start: int | None = None,
+    goal: int | None = None,
 ) -> PlainResult:
     """Multi-source A* to any node of the last layer; nodes are numbered through all layers.
 
     `layers` holds the joints of every node of every layer [rad]; scheme f1 has node costs 0,
-    scheme f2 the safety penalty.
+    scheme f2 the safety penalty. `start` and `goal` narrow the first and the last layer to one
+    node each; a weight of 0 makes it Dijkstra's search.
     """
     points: list[list[float]] = []
     costs = []
@@ -45,13 +48,16 @@ def plain_astar(
             layer_of.append(number)
     first_of.append(len(points))
     last_layer = len(layers) - 1
-    goals = points[first_of[last_layer] :]
+    goal_nodes = range(first_of[last_layer], len(points)) if goal is None else [goal]
+    goals = [points[node] for node in goal_nodes]
 
     heuristic = {}
 
     def estimate(node: int) -> float:
+        if weight == 0.0:
+            return 0.0
         if node not in heuristic:
-            heuristic[node] = weight * min(math.dist(points[node], goal) for goal in goals)
+            heuristic[node] = weight * min(math.dist(points[node], point) for point in goals)
         return heuristic[node]
 
     best = {}
@@ -59,7 +65,7 @@ def plain_astar(
     closed = set()
     heap: list[tuple[float, int]] = []
     if goals:
-        for node in range(first_of[1]):
+        for node in range(first_of[1]) if start is None else [start]:
             best[node] = costs[node]
             heapq.heappush(heap, (best[node] + estimate(node), node))
     while heap:
@@ -67,13 +73,15 @@ def plain_astar(
         if node in closed:
             continue
         closed.add(node)
-        if layer_of[node] == last_layer:
+        if node in goal_nodes:
             path = [node]
             while path[-1] in parent:
                 path.append(parent[path[-1]])
             return PlainResult(path[::-1], best[node], len(closed))
         a0, a1, a2, a3, a4, a5 = points[node]
         below = layer_of[node] + 1
+        if below > last_layer:
+            continue
         for target in range(first_of[below], first_of[below + 1]):
             if target in closed:
                 continue
@@ -92,3 +100,15 @@ def plain_astar(
                 parent[target] = node
                 heapq.heappush(heap, (reached + estimate(target), target))
     return PlainResult([], math.inf, len(closed))
+
+
+def plain_f(
+    layers: Sequence[Sequence[Joints]], ranges: Joints, weight: float = 0.9
+) -> tuple[PlainResult, int]:
+    """Scheme f: Dijkstra picks start and goal, A* runs between them; also Dijkstra's expansions."""
+    free = [[0.0] * len(layer) for layer in layers]
+    chosen = plain_astar(layers, free, ranges, 0.0)
+    if not chosen.path:
+        return chosen, chosen.expanded
+    ends = chosen.path[0], chosen.path[-1]
+    return plain_astar(layers, free, ranges, weight, *ends), chosen.expanded

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from numba import njit
 
 from solver.collision.kernels_scene import (
     FREE,
@@ -12,6 +11,7 @@ from solver.collision.kernels_scene import (
     check_self,
     place_bodies,
 )
+from solver.kernel import kernel
 from solver.kinematics.kernels_arm import (
     forward_frames,
     inverse_branches,
@@ -29,7 +29,7 @@ _TURN = 2.0 * math.pi
 _TOLERANCE = 1e-12
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def to_pendant(convention, model, pendant):
     """Pendant joints in (-pi, pi] of model angles; `convention` is pendant_from_model (6, 6)."""
     for r in range(6):
@@ -40,14 +40,14 @@ def to_pendant(convention, model, pendant):
         pendant[r] = angle
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def elbow_fits(joints, elbow):
     """Whether J2 + J3 lies inside the elbow's bounds."""
     angle = joints[1] + joints[2]
     return elbow[0] - _TOLERANCE <= angle <= elbow[1] + _TOLERANCE
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def kept_representatives(pendant, limits, elbow, principal_only, space):
     """Representatives inside limits and elbow bounds, moved to the front of `space`."""
     count = representatives(pendant, limits, principal_only, space)
@@ -60,7 +60,7 @@ def kept_representatives(pendant, limits, elbow, principal_only, space):
     return kept
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def multiply(a, b, out):
     """Product of two (3, 4) rigid transforms."""
     for r in range(3):
@@ -69,7 +69,7 @@ def multiply(a, b, out):
         out[r, 3] += a[r, 3]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def evaluate_poses(
     begin,
     end,
@@ -169,7 +169,7 @@ def evaluate_poses(
             outcome[n, o, b] = _FEASIBLE if status == 0 else _COLLISION + status - 1
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def expand_nodes(
     begin,
     end,
@@ -218,7 +218,7 @@ def expand_nodes(
     return row
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def pose_of_joints(arm, scene, model, touch):
     """Outcome, clearance, rows of the nearest bodies and nearest points of many postures.
 

@@ -56,10 +56,12 @@ def run(options: argparse.Namespace) -> int:
                 f"{1e3 * plan.exact_search:.1f}; f2 search {1e3 * plan.f2_search:.1f})"
             )
         for peer in peers:
-            agreement = "the same cost" if peer.same_cost else "DIFFERENT costs"
+            agreement = "the same costs" if peer.same_costs else "DIFFERENT costs"
             print(
-                f"{peer.cell}: plain Python A* of f2 takes {peer.plain / peer.ours:,.0f} times "
-                f"the f2 search and {peer.plain / peer.exact:,.0f} times the exact one "
-                f"({agreement})"
+                f"{peer.cell}: plain Python A* ({agreement}, {peer.nodes:,} nodes)\n"
+                f"  scheme f takes {peer.plain_f / peer.exact:,.0f} times the exact search and "
+                f"{peer.plain_f / peer.f:,.0f} times ours\n"
+                f"  scheme f2 takes {peer.plain_f2 / peer.exact:,.0f} times the exact search and "
+                f"{peer.plain_f2 / peer.f2:,.0f} times ours"
             )
     return 0

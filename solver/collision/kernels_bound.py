@@ -2,8 +2,6 @@
 
 import math
 
-from numba import njit
-
 from solver.collision.kernels_shapes import (
     BOX,
     HULL,
@@ -13,9 +11,10 @@ from solver.collision.kernels_shapes import (
     row_of_vectors,
     vector_numbers,
 )
+from solver.kernel import kernel
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _skeleton(kind, size):
     """Half extents of a box and the radius about it that together contain the body."""
     if kind == BOX:
@@ -25,7 +24,7 @@ def _skeleton(kind, size):
     return 0.0, 0.0, size[0], size[1]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def numbers_lower_bound(kind_a, size_a, p, position_a, kind_b, size_b, q, position_b):
     """Bound the distance for sizes (3), rotations (9) and positions (3) given as numbers.
 
@@ -56,7 +55,7 @@ def numbers_lower_bound(kind_a, size_a, p, position_a, kind_b, size_b, q, positi
     return math.sqrt(total) - radius_a - radius_b
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def quick_lower_bound(
     kind_a, size_a, rotation_a, position_a, kind_b, size_b, rotation_b, position_b
 ):
@@ -76,7 +75,7 @@ def quick_lower_bound(
     )
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def row_lower_bound(
     kinds_a, sizes_a, rotations_a, positions_a, i, kinds_b, sizes_b, rotations_b, positions_b, j
 ):

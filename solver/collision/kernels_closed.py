@@ -5,22 +5,22 @@ Everything is in the frame of the second body; a segment is centre c, unit axis 
 
 import math
 
-from numba import njit
+from solver.kernel import inline_kernel, kernel
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inline_kernel
 def clamp(value, low, high):
     """`value` brought into [low, high]."""
     return min(max(value, low), high)
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inline_kernel
 def point_in_box(x, y, z, hx, hy, hz):
     """Nearest point of a box of half extents h to a point (the point itself when inside)."""
     return clamp(x, -hx, hx), clamp(y, -hy, hy), clamp(z, -hz, hz)
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inline_kernel
 def point_in_cylinder(x, y, z, half, radius):
     """Nearest point of a flat-ended cylinder about z to a point."""
     across = math.sqrt(x * x + y * y)
@@ -29,7 +29,7 @@ def point_in_cylinder(x, y, z, half, radius):
     return x, y, clamp(z, -half, half)
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inline_kernel
 def _slope(x, dx, h):
     """Half the derivative of the squared excess of one coordinate over a slab."""
     if x > h:
@@ -39,7 +39,7 @@ def _slope(x, dx, h):
     return 0.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _narrow(edge, cx, cy, cz, ax, ay, az, hx, hy, hz, low, high, at_low, at_high):
     """Shorten the bracket of the zero of a rising slope at one breakpoint inside it."""
     if low < edge < high:
@@ -54,7 +54,7 @@ def _narrow(edge, cx, cy, cz, ax, ay, az, hx, hy, hz, low, high, at_low, at_high
     return low, high, at_low, at_high
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def segment_to_box(cx, cy, cz, ax, ay, az, half, hx, hy, hz):
     """Parameter in [-half, half] of the point of a segment that is nearest to a box.
 
@@ -124,7 +124,7 @@ def segment_to_box(cx, cy, cz, ax, ay, az, half, hx, hy, hz):
     return 0.5 * (low + high)
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inline_kernel
 def segment_to_segment(cx, cy, cz, ax, ay, az, half_a, bx, by, bz, half_b):
     """Parameters (s, t) of the nearest points of c + s a and t b; a and b are unit vectors."""
     slant = ax * bx + ay * by + az * bz

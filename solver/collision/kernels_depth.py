@@ -8,10 +8,9 @@ others it is a start that is then improved.
 
 import math
 
-from numba import njit
-
 from solver.collision.kernels_gjk import GAP, gjk, separation
 from solver.collision.kernels_shapes import HULL, dot, minus, norm, placed, scaled
+from solver.kernel import kernel
 
 IMPROVEMENTS = 8
 
@@ -19,7 +18,7 @@ SLACK = 1e-4
 """How far apart cores are drawn: enough for a precise direction, little next to any radius [m]."""
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _axis(r, k):
     if k == 0:
         return r[0], r[3], r[6]
@@ -28,12 +27,12 @@ def _axis(r, k):
     return r[2], r[5], r[8]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _unit_axis(k):
     return 1.0 * (k == 0), 1.0 * (k == 1), 1.0 * (k == 2)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _direction(number, r, t, hint):
     """Candidate direction by number: axes of B, axes of A, their products, and more."""
     if number < 3:
@@ -51,7 +50,7 @@ def _direction(number, r, t, hint):
     return minus(t, scaled(dot(t, a), a))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def refined(a, vertices_a, r, t, b, vertices_b, best, n):
     """Improve a direction n of signed gap `best`; returns (gap, n, point of A, point of B).
 
@@ -72,7 +71,7 @@ def refined(a, vertices_a, r, t, b, vertices_b, best, n):
     return best, n, pa, pb
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _middle(body, vertices):
     """Mean of a hull's vertices, the origin of every other kind."""
     x, y, z = 0.0, 0.0, 0.0
@@ -85,7 +84,7 @@ def _middle(body, vertices):
     return x, y, z
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def overlap(a, vertices_a, r, t, b, vertices_b, hint):
     """Best signed gap found, its unit direction from B to A, and the deepest points of A and B."""
     best, n = -math.inf, (0.0, 0.0, 1.0)

@@ -8,8 +8,6 @@ the depth is an estimate that is not under-stated.
 
 import math
 
-from numba import njit
-
 from solver.collision.kernels_bound import quick_lower_bound
 from solver.collision.kernels_closed import (
     point_in_box,
@@ -40,6 +38,7 @@ from solver.collision.kernels_shapes import (
     turned_back,
     vector_numbers,
 )
+from solver.kernel import inline_kernel, kernel
 
 __all__ = ["convex_distance", "numbers_distance", "quick_lower_bound", "row_distance"]
 
@@ -52,7 +51,7 @@ ROUNDING = 1e-12
 """Gaps of cores below this are held for touching [m]."""
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inline_kernel
 def _relative(p, position_a, q, position_b):
     """Rotation (nine, row by row) and position of A in the frame of B."""
     x, y, z = minus(position_a, position_b)
@@ -75,7 +74,7 @@ def _relative(p, position_a, q, position_b):
     return r, t
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inline_kernel
 def _onto(b, x, y, z):
     """Nearest point of a sphere's or capsule's core, a cylinder or a box B to a point."""
     kind, sx, sy, sz, _, _ = b
@@ -88,7 +87,7 @@ def _onto(b, x, y, z):
     return 0.0, 0.0, 0.0
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inline_kernel
 def _axes_nearest(a, r, t, b):
     """Nearest points of A's point or axis and of B, where a cylinder B stands for its axis.
 
@@ -104,7 +103,7 @@ def _axes_nearest(a, r, t, b):
     return (t[0] + s * r[2], t[1] + s * r[5], t[2] + s * r[8]), (0.0, 0.0, w)
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inline_kernel
 def _closed_form(a, r, t, b, cutoff):
     """Try the closed forms: (verdict, gap of the cores, direction from B to A, witnesses).
 
@@ -130,7 +129,7 @@ def _closed_form(a, r, t, b, cutoff):
     return UNDECIDED, 0.0, n, t, t
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _searched(a, vertices_a, r, t, b, vertices_b, verdict, n, cutoff, wants_depth):
     """Gap of the cores, direction and witnesses where no closed form has them."""
     overlapping = verdict == OVERLAPPING
@@ -146,7 +145,7 @@ def _searched(a, vertices_a, r, t, b, vertices_b, verdict, n, cutoff, wants_dept
     return (bound if bound > ROUNDING else min(bound, 0.0)), n, pa, pb
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inline_kernel
 def _into_world(q, position, p, factor, n, witness, row):
     """Write the point p + factor n of B's frame into a row of the witnesses."""
     x, y, z = p[0] + factor * n[0], p[1] + factor * n[1], p[2] + factor * n[2]
@@ -155,7 +154,7 @@ def _into_world(q, position, p, factor, n, witness, row):
     witness[row, 2] = q[6] * x + q[7] * y + q[8] * z + position[2]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def numbers_distance(
     a,
     vertices_a,
@@ -192,7 +191,7 @@ def numbers_distance(
     return gap - radius_a - radius_b
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def convex_distance(
     kind_a,
     size_a,
@@ -246,7 +245,7 @@ def convex_distance(
     )
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def row_distance(
     bodies_a,
     rotations_a,

@@ -10,8 +10,6 @@ and position (three) of A in the frame of B, in which everything here is.
 
 import math
 
-from numba import njit
-
 from solver.collision.kernels_shapes import (
     core_reach,
     core_support,
@@ -23,6 +21,7 @@ from solver.collision.kernels_shapes import (
     turned_back,
 )
 from solver.collision.kernels_simplex import edge_weight, tetrahedron_weights, triangle_weights
+from solver.kernel import kernel
 
 GAP = 1e-9
 """Width of the bracket between bound and witness at which the search stops [m]."""
@@ -33,14 +32,14 @@ TOUCH = 1e-10
 MOST_STEPS = 80
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def support_of_first(a, vertices_a, r, t, n):
     """Point of the core of A farthest against n."""
     x, y, z = turned_back(r, n)
     return placed(r, t, core_support(a, vertices_a, -x, -y, -z))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def separation(a, vertices_a, r, t, b, vertices_b, n):
     """Signed gap of the cores along the unit direction n, from B to A."""
     x, y, z = turned_back(r, n)
@@ -48,7 +47,7 @@ def separation(a, vertices_a, r, t, b, vertices_b, n):
     return dot(n, t) - reach_a - core_reach(b, vertices_b, n[0], n[1], n[2])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _blend(wa, wb, wc, a, b, c):
     return (
         wa * a[0] + wb * b[0] + wc * c[0],
@@ -57,7 +56,7 @@ def _blend(wa, wb, wc, a, b, c):
     )
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def gjk(a, vertices_a, r, t, b, vertices_b, start, cutoff):
     """Distance of two cores, from any first guess `start` of the direction from B to A.
 

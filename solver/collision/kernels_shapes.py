@@ -11,7 +11,8 @@ nine numbers row by row, a position three.
 import math
 
 import numpy as np
-from numba import njit
+
+from solver.kernel import kernel
 
 SPHERE = 0
 CAPSULE = 1
@@ -20,31 +21,31 @@ BOX = 3
 HULL = 4
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def body_numbers(kind, size, count):
     """Gather the numbers of one body from its kind, its size (3,) and its count of vertices."""
     return np.int64(kind), size[0], size[1], size[2], np.int64(0), np.int64(count)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def vector_numbers(vector):
     """Unpack a (3,) array."""
     return vector[0], vector[1], vector[2]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def rotation_numbers(m):
     """Unpack a (3, 3) array, row by row."""
     return m[0, 0], m[0, 1], m[0, 2], m[1, 0], m[1, 1], m[1, 2], m[2, 0], m[2, 1], m[2, 2]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def row_of_vectors(vectors, i):
     """Unpack row i of a (k, 3) array."""
     return vectors[i, 0], vectors[i, 1], vectors[i, 2]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def row_of_rotations(m, i):
     """Unpack row i of a (k, 3, 3) array."""
     return (
@@ -60,7 +61,7 @@ def row_of_rotations(m, i):
     )
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def core_radius(body):
     """Return the rounding radius about the core [m]."""
     if body[0] == SPHERE:
@@ -70,7 +71,7 @@ def core_radius(body):
     return 0.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def simple_support(body, dx, dy, dz):
     """Point of the core farthest along d in the body's own frame, for every kind but a hull."""
     kind, sx, sy, sz, _, _ = body
@@ -86,7 +87,7 @@ def simple_support(body, dx, dy, dz):
     return 0.0, 0.0, 0.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def simple_reach(body, dx, dy, dz):
     """Largest value of d . x over the core in the body's own frame, for every kind but a hull."""
     kind, sx, sy, sz, _, _ = body
@@ -99,7 +100,7 @@ def simple_reach(body, dx, dy, dz):
     return 0.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def core_support(body, vertices, dx, dy, dz):
     """Point of the core farthest along d, both in the body's own frame."""
     if body[0] != HULL:
@@ -114,7 +115,7 @@ def core_support(body, vertices, dx, dy, dz):
     return vertices[best, 0], vertices[best, 1], vertices[best, 2]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def core_reach(body, vertices, dx, dy, dz):
     """Largest value of d . x over the core, in the body's own frame."""
     if body[0] != HULL:
@@ -123,7 +124,7 @@ def core_reach(body, vertices, dx, dy, dz):
     return dx * x + dy * y + dz * z
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def turned_back(r, n):
     """Direction n of the frame of B in the frame of A, which stands at rotation r."""
     return (
@@ -133,7 +134,7 @@ def turned_back(r, n):
     )
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def placed(r, t, p):
     """Point p of the frame of A in the frame of B."""
     return (
@@ -143,25 +144,25 @@ def placed(r, t, p):
     )
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def dot(u, v):
     """Scalar product of two triples."""
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def norm(u):
     """Length of a triple."""
     return math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def minus(u, v):
     """Difference of two triples."""
     return u[0] - v[0], u[1] - v[1], u[2] - v[2]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def scaled(factor, u):
     """Multiple of a triple."""
     return factor * u[0], factor * u[1], factor * u[2]

@@ -4,13 +4,13 @@ Weights are clamped to be a convex combination whatever the rounding, so that th
 belongs to the simplex; a weight of exactly zero drops the corner.
 """
 
-from numba import njit
+from solver.kernel import kernel
 
 FLAT = 1e-20
 """Squared sine below which a corner counts as lying in the plane of the others."""
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def edge_weight(a, b):
     """Weight of b at the point of edge ab nearest to the origin."""
     ex, ey, ez = b[0] - a[0], b[1] - a[1], b[2] - a[2]
@@ -23,7 +23,7 @@ def edge_weight(a, b):
     return along / square
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _edge_square(a, b, weight):
     x = a[0] + weight * (b[0] - a[0])
     y = a[1] + weight * (b[1] - a[1])
@@ -31,7 +31,7 @@ def _edge_square(a, b, weight):
     return x * x + y * y + z * z
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def triangle_weights(a, b, c):
     """Weights (wa, wb, wc) and squared distance of the point of abc nearest to the origin."""
     ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
@@ -76,7 +76,7 @@ def triangle_weights(a, b, c):
     return wa, wb, wc, best
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _is_outside(a, b, c, d):
     """Whether the origin is beyond the plane abc as seen from d, or d is next to that plane."""
     ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
@@ -89,7 +89,7 @@ def _is_outside(a, b, c, d):
     return origin * corner <= 0.0 or corner * corner <= FLAT * scale
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def tetrahedron_weights(a, b, c, d):
     """Weights of the nearest point of abcd; (1, 1, 1, 1) when the origin is strictly inside."""
     wa, wb, wc, wd = 1.0, 1.0, 1.0, 1.0

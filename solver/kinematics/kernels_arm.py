@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from solver.kernel import kernel
 from solver.transforms import FloatArray
 from solver.units import TURN
 
@@ -38,7 +38,7 @@ ANGLE_BOUND = 1e6
 """Limits and angles beyond this are refused [rad]: adding turns would lose their meaning."""
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _wrapped(angle: float) -> float:
     """`angle` from (-3 pi, 3 pi) moved to (-pi, pi]."""
     if angle > math.pi:
@@ -48,13 +48,13 @@ def _wrapped(angle: float) -> float:
     return angle
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _opposite(angle: float) -> float:
     """`angle` from (-pi, pi] half a turn further, in (-pi, pi]."""
     return angle - math.pi if angle > 0.0 else angle + math.pi
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def forward_frames(arm: FloatArray, joints: FloatArray, frames: FloatArray) -> None:
     """Fill `frames` (7, 3, 4) with fanuc_world_from_frame of the D-H frames.
 
@@ -110,7 +110,7 @@ def forward_frames(arm: FloatArray, joints: FloatArray, frames: FloatArray) -> N
     frames[6, 0, 3], frames[6, 1, 3], frames[6, 2, 3] = wx, wy, wz
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def inverse_branches(
     arm: FloatArray, wrist: FloatArray, joints: FloatArray, found: BoolArray
 ) -> None:
@@ -221,7 +221,7 @@ def inverse_branches(
             joints[branch + 1, 5] = _opposite(theta6)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def manipulability(arm: FloatArray, joints: FloatArray) -> float:
     """|a2 (s2 F3 - c2 F1)| |R| |s5| [m^3], which equals sqrt(det(J J^T)); section 3.1."""
     a1, a2, a3, d4 = arm[0], arm[1], arm[2], arm[3]
@@ -233,7 +233,7 @@ def manipulability(arm: FloatArray, joints: FloatArray) -> float:
     return measure
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def representatives(
     pendant: FloatArray, limits: FloatArray, principal_only: bool, out: FloatArray
 ) -> int:
@@ -283,21 +283,21 @@ def representatives(
     return count
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def forward_many(arm: FloatArray, joints: FloatArray, frames: FloatArray) -> None:
     """Fill `frames` (k, 7, 3, 4) with the `forward_frames` of every row of `joints` (k, 6)."""
     for row in range(joints.shape[0]):
         forward_frames(arm, joints[row], frames[row])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def inverse_many(arm: FloatArray, wrists: FloatArray, joints: FloatArray, found: BoolArray) -> None:
     """Fill `joints` (k, 8, 6) and `found` (k, 8) from every row of `wrists` (k, 3, 4)."""
     for row in range(wrists.shape[0]):
         inverse_branches(arm, wrists[row], joints[row], found[row])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def manipulability_many(arm: FloatArray, joints: FloatArray, out: FloatArray) -> None:
     """Fill `out` (k,) with the `manipulability` of every row of `joints` (k, 6)."""
     for row in range(joints.shape[0]):

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from solver.kernel import kernel
 from solver.search.kernels_edges import (
     BEST_ROW,
     EUCLIDEAN,
@@ -30,13 +30,13 @@ PUSH_WORK = 16
 POP_WORK = 64
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def before(key: float, node: int, other_key: float, other_node: int) -> bool:
     """Order of the open list: least key first, then least node number."""
     return key < other_key or (key == other_key and node < other_node)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def push(keys: FloatArray, nodes: IntArray, size: int, key: float, node: int) -> None:
     """Add an entry to a heap of `size` entries."""
     at = size
@@ -51,7 +51,7 @@ def push(keys: FloatArray, nodes: IntArray, size: int, key: float, node: int) ->
     nodes[at] = node
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def pop(keys: FloatArray, nodes: IntArray, size: int) -> int:
     """Take the first entry from a heap of `size` entries and return its node."""
     result = nodes[0]
@@ -77,7 +77,7 @@ def pop(keys: FloatArray, nodes: IntArray, size: int) -> int:
     return int(result)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def estimate(
     tile: FloatArray,
     points: FloatArray,
@@ -101,7 +101,7 @@ def estimate(
         heuristic[node] = tile[BEST_ROW * TILE + node - low]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def open_starts(
     points: FloatArray,
     node_cost: FloatArray,
@@ -124,7 +124,7 @@ def open_starts(
         state[HEAP_SIZE] += 1
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def best_first(
     graph: GraphArrays,
     points: FloatArray,

@@ -10,8 +10,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from solver.kernel import kernel
 from solver.transforms import FloatArray, IntArray
 
 TILE = 128
@@ -41,7 +41,7 @@ class GraphArrays(NamedTuple):
     lean_limits: FloatArray
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def fill_tile(tile: FloatArray, rows: FloatArray, begin: int, end: int, width: int) -> int:
     """Put rows begin..end-1 into the tile, best infinite; returns the length padded to eight."""
     count = end - begin
@@ -57,7 +57,7 @@ def fill_tile(tile: FloatArray, rows: FloatArray, begin: int, end: int, width: i
     return padded
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def relax(
     tile: FloatArray,
     count: int,
@@ -97,7 +97,7 @@ def relax(
             tile[BEST_ROW * TILE + j] = best if best <= cost else cost
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def relax_bounded(
     tile: FloatArray,
     count: int,
@@ -159,7 +159,7 @@ def relax_bounded(
             tile[BEST_ROW * TILE + j] = best if best <= cost else cost
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def gap_limits(gap: int, step_limits: FloatArray, lean_limits: FloatArray) -> FloatArray:
     """Seven limits of a gap, tolerance included; infinite where there is none."""
     limits = np.full(7, INFINITE)
@@ -171,7 +171,7 @@ def gap_limits(gap: int, step_limits: FloatArray, lean_limits: FloatArray) -> Fl
     return limits
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def step_allowed(graph: GraphArrays, limits: FloatArray, source: int, target: int) -> bool:
     """Whether the steps between two nodes stay within the limits."""
     steps, lean = graph.steps, graph.lean

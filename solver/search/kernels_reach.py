@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from numba import njit
-
+from solver.kernel import kernel
 from solver.transforms import FloatArray, IntArray
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def nearest_pair(
     steps: FloatArray,
     lean: FloatArray,

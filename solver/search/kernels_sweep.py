@@ -11,8 +11,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from solver.kernel import kernel
 from solver.search.kernels_edges import (
     ABSOLUTE,
     BEST_ROW,
@@ -52,7 +52,7 @@ class Clusters(NamedTuple):
     high: FloatArray
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def empty_clusters(size: int) -> Clusters:
     """Room for the clusters of up to `size` nodes."""
     most = size // FEWEST + size // FINE + 2
@@ -66,7 +66,7 @@ def empty_clusters(size: int) -> Clusters:
     )
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def fill_clusters(graph: GraphArrays, clusters: int, out: Clusters) -> None:
     """Copy the ordered nodes into rows and box each cluster."""
     width = 6
@@ -90,7 +90,7 @@ def fill_clusters(graph: GraphArrays, clusters: int, out: Clusters) -> None:
                 out.high[cluster, row] = max(out.high[cluster, row], out.rows[i, row])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def cluster_nodes(
     graph: GraphArrays, middle: FloatArray, start: int, stop: int, coarse: bool, out: Clusters
 ) -> int:
@@ -131,7 +131,7 @@ def cluster_nodes(
     return clusters
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def box_improves(
     value: float,
     weight: float,
@@ -156,7 +156,7 @@ def box_improves(
     return metric != EUCLIDEAN or value + weight * np.sqrt(d) < worst
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def boxes_allow(
     limits: FloatArray, sources: Clusters, source: int, targets: Clusters, target: int
 ) -> bool:
@@ -171,7 +171,7 @@ def boxes_allow(
     return True
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def relax_cluster(
     tile: FloatArray,
     sources: Clusters,
@@ -216,7 +216,7 @@ def relax_cluster(
     return done
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def sweep(
     graph: GraphArrays,
     middle: FloatArray,
@@ -299,7 +299,7 @@ def sweep(
         source_count = target_count
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def first_path(
     graph: GraphArrays,
     metric: int,

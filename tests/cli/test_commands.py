@@ -198,7 +198,7 @@ def test_doctor_passes_its_self_test(capsys):
 def test_bench_reports_ratios_and_the_same_cost(capsys):
     code, found = document(capsys, "bench", "--repeats", "1", "--json")
     assert code == 0
-    assert all(one["same_cost"] for one in found["peers"])
+    assert all(one["same_costs"] for one in found["peers"])
 
 
 @pytest.mark.parametrize(

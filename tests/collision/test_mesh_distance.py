@@ -282,7 +282,7 @@ def test_a_triangle_without_area_for_which_fcl_states_too_little_changes_no_dist
     )
     start, along = np.array([0.69502571, 0.3257811, 0.14080106]), np.array([0.8297, 0.0899, 0.0652])
     edge = [start + along, start - 0.44255600359455993 * along]
-    vertices = np.array([*edge, start, start + [0.5, 0.5, 0.5]])
+    vertices = np.array([*edge, start, start + 0.5])
     faces = np.array([[0, 1, 3], [0, 1, 2]])
     expected = triangle_distance(first[None], vertices[faces[:1]])
     fcl = pytest.importorskip("fcl")

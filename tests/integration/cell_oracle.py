@@ -256,9 +256,14 @@ class Margins(NamedTuple):
     own: float
 
     @property
+    def tool_spare(self) -> float:
+        """By how much the margins of shank and ball are kept, at worst."""
+        return min(self.near - NEAR, self.ball - NEAR, self.web + DEPTH)
+
+    @property
     def spare(self) -> float:
-        """By how much near, contact and self margins are kept, at worst."""
-        return min(self.near - NEAR, self.ball - NEAR, self.web + DEPTH, self.own - SELF)
+        """By how much all margins that do not count in the clearance are kept, at worst."""
+        return min(self.tool_spare, self.own - SELF)
 
 
 class CellOracle:
@@ -286,8 +291,8 @@ class CellOracle:
         found = self.coal.DistanceResult()
         return self.coal.distance(one, place, other, other_place, self.request, found)
 
-    def margins(self, pendant: np.ndarray) -> Margins:
-        """Every margin of a posture."""
+    def margins(self, pendant: np.ndarray, touches_web: bool = True) -> Margins:
+        """Every margin of a posture; where no pass touches the web it is like any other body."""
         links = links_of(pendant)
         places = [self._place(links[solid.link] @ solid.pose) for solid in self.moving]
         least = dict.fromkeys(Margins._fields, np.inf)
@@ -296,7 +301,7 @@ class CellOracle:
                 if frozenset((solid.owner, other.owner)) in TOUCHING:
                     continue
                 kind = {"shank": "near", "ball": "ball"}.get(solid.name, "clearance")
-                if kind == "ball" and other.name == "web":
+                if kind == "ball" and other.name == "web" and touches_web:
                     kind = "web"
                 gap = self._gap(solid.shape, place, other.shape, other_place)
                 least[kind] = min(least[kind], gap)

@@ -13,6 +13,7 @@ import pytest
 
 import solver
 from solver.candidates.generate import generate
+from solver.candidates.kernels_candidates import pose_of_joints
 from solver.candidates.outcomes import Outcome
 from solver.cli.main import main
 from solver.model.settings import EdgeCost, StepLimits, Sweep
@@ -158,16 +159,69 @@ def test_rejected_candidates_break_what_their_outcome_names(sample, distances):
             if outcome == HIT:
                 assert found.clearance <= TOLERANCE
             elif outcome == MARGIN:
-                assert replace_own(found).spare <= TOLERANCE
+                assert found.tool_spare <= TOLERANCE
             else:
                 assert found.own <= oracle.SELF + TOLERANCE
                 assert found.clearance > -TOLERANCE
-                assert replace_own(found).spare > -TOLERANCE
+                assert found.tool_spare > -TOLERANCE
 
 
-def replace_own(margins):
-    """The margins without those of robot and tool among themselves."""
-    return margins._replace(own=np.inf)
+class Postures:
+    """Postures round the nodes of the full cell, as the product's check sees them."""
+
+    def __init__(self, count):
+        problem = solver.load_cell(oracle.FULL)
+        candidates = generate(problem)
+        self.arm, self.scene = np.array(problem.robot.arm_lengths), candidates.scene
+        rng = np.random.default_rng(5)
+        node = candidates.nodes.pendant[rng.integers(len(candidates.nodes), size=count)]
+        reach = rng.random((2, count, 1)) * 0.5
+        self.one, self.other = node + rng.normal(size=(2, count, 6)) * reach
+        # Every other posture belongs to a pass that touches the web, the rest to none.
+        self.touch = np.where(np.arange(count) % 2, self.scene.touch_number("web"), -1)
+
+    def check(self, pendant, touch):
+        """Status and clearance, at unrounded joints."""
+        model = np.array([oracle.model_of(joints) for joints in pendant])
+        return pose_of_joints(self.arm, self.scene.packed, model, touch)[:2]
+
+    def flips(self):
+        """Postures just behind the place where a verdict changes, what broke there, and touch."""
+        inside, outside = (self.check(one, self.touch)[0] == 0 for one in (self.one, self.other))
+        kept = inside & ~outside
+        free, broken, touch = self.one[kept], self.other[kept], self.touch[kept]
+        for _ in range(50):
+            middle = (free + broken) / 2
+            passed = self.check(middle, touch)[0] == 0
+            free[passed], broken[~passed] = middle[passed], middle[~passed]
+        return broken, self.check(broken, touch)[0], touch
+
+
+@pytest.fixture(scope="module")
+def postures():
+    return Postures(2000)
+
+
+def test_a_verdict_flips_where_the_oracle_meets_the_threshold(postures, distances):
+    found = [
+        (status, distances[oracle.FULL].margins(joints, touches_web=touch >= 0))
+        for joints, status, touch in zip(*postures.flips(), strict=True)
+    ]
+    for status, count in ((1, 100), (2, 100), (3, 30)):
+        margins = [one for which, one in found if which == status]
+        spare = [
+            {1: one.clearance, 2: one.tool_spare, 3: one.own - oracle.SELF}[status]
+            for one in margins
+        ]
+        assert len(spare) >= count
+        assert np.abs(spare).max() <= TOLERANCE
+
+
+def test_clearance_is_exact_away_from_the_path_as_well(postures, distances):
+    status, clearance = postures.check(postures.one, postures.touch)
+    for index in np.flatnonzero(status == 0)[:300]:
+        exact = distances[oracle.FULL].margins(postures.one[index]).clearance
+        assert abs(clearance[index] - exact) <= TOLERANCE
 
 
 def test_the_slices_of_a_fillet_never_overstate_the_clearance_from_the_steel(distances):

@@ -1,6 +1,4 @@
 import heapq
-import importlib.util
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +14,7 @@ from search_oracles import (
     small_graphs,
 )
 
+from solver.benchmarks import plain_astar
 from solver.errors import Cancelled, ModelError
 from solver.search import paper
 from solver.search.exact import exact
@@ -23,15 +22,6 @@ from solver.search.graph import LayeredGraph
 from solver.search.paper import f, f1, f2, heuristic_values
 
 SCHEMES = [f, f1, lambda graph, **given: f2(graph, np.zeros(graph.node_count), **given)]
-
-
-def peer():
-    """The plain Python A* of the benchmark."""
-    file = Path(__file__).parents[2] / "benchmarks" / "plain_astar.py"
-    spec = importlib.util.spec_from_file_location("plain_astar", file)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.mark.parametrize("scheme", SCHEMES, ids=["f", "f1", "f2"])
@@ -131,12 +121,12 @@ def test_every_scheme_expands_as_the_plain_python_search_does(seed):
     layers = [graph.joints[graph.layer(i)].tolist() for i in range(8)]
     for result, costs in ((f1(graph), np.zeros(count)), (f2(graph, penalty), penalty)):
         node_costs = [costs[graph.layer(i)].tolist() for i in range(8)]
-        plain = peer().plain_astar(layers, node_costs, graph.ranges.tolist())
+        plain = plain_astar.plain_astar(layers, node_costs, graph.ranges.tolist())
         assert result.path.tolist() == plain.path
         assert result.cost == pytest.approx(plain.cost, rel=1e-12)
         assert result.expanded == plain.expanded
     result = f(graph)
-    plain, dijkstra_expanded = peer().plain_f(layers, graph.ranges.tolist())
+    plain, dijkstra_expanded = plain_astar.plain_f(layers, graph.ranges.tolist())
     assert result.path.tolist() == plain.path
     assert (result.expanded, result.dijkstra_expanded) == (plain.expanded, dijkstra_expanded)
 
