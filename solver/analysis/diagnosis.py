@@ -36,7 +36,7 @@ class EmptyLayer:
         return (
             f"waypoint {self.waypoint + 1} has no feasible pose ({counts}); nearest is lean "
             f"{self.nearest.lean * DEG_PER_RAD:g} deg on branch {self.nearest.branch}, where "
-            f"{worst.subject} misses by {-worst.margin:.3g} {worst.unit} ({worst.filter.label})"
+            f"{-worst.margin:.3g} {worst.unit} are missing: {worst.subject} ({worst.filter.label})"
         )
 
 
@@ -46,7 +46,7 @@ class InfeasiblePathError(PlanningError):
     def __init__(self, empty: tuple[EmptyLayer, ...], waypoints: int, cut: Cut | None) -> None:
         self.empty, self.cut = empty, cut
         if empty:
-            more = f"; {waypoints - 1} more waypoints have none either" if waypoints > 1 else ""
+            more = f"; {waypoints} waypoints in all have none" if waypoints > 1 else ""
             advice = "try a wider lean range, all branches, or another place of the beam"
             message = f"no sequence: {empty[0]}{more}; {advice}"
         elif cut is not None:

@@ -64,7 +64,12 @@ def check_positions(
     """
     count = len(problem.toolpath)
     number = Check(
-        "position count", len(pendant) == count, len(pendant), count, "", "one per waypoint"
+        "position count",
+        len(pendant) == count,
+        len(pendant),
+        count,
+        "positions",
+        "one per waypoint of the cell's path, or of that given with --path",
     )
     if not number.passed:
         return (number,)
@@ -184,6 +189,8 @@ def _collision_checks(
     for status, name in names.items():
         broken = np.flatnonzero(found.status == status)
         detail = f"first at waypoint {broken[0] + 1}" if len(broken) else "every margin kept"
+        if status == SELF_BROKEN and problem.settings.self_margin is None:
+            detail = "NOT CHECKED, the cell leaves these pairs out"
         first = int(broken[0]) if len(broken) else None
         checks.append(
             Check(name, not len(broken), len(broken), 0, "positions too close", detail, first)

@@ -179,10 +179,7 @@ def verdict(sequence: Sequence, constant: Reference) -> str:
     angle = constant.lean * DEG_PER_RAD
     saving = 1.0 - sequence.joint_cost / constant.joint_cost if constant.joint_cost else 0.0
     if not constant.keeps_clearance:
-        return (
-            f"No constant lean keeps the safety distance (the best, {angle:g} deg, comes to "
-            f"{rounded_down(constant.least_clearance):.1f} mm)."
-        )
+        return "No constant lean keeps the safety distance."
     if saving <= 1e-9:
         return f"The plan does not beat the constant lean of {angle:g} deg, which is as good."
     return f"The plan moves the joints {100 * saving:.1f} % less than the constant {angle:g} deg."

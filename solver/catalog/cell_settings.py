@@ -36,7 +36,7 @@ _Value = TypeVar("_Value")
 def read_settings(table: Table) -> PlanningSettings:
     """Read the table `settings`; what it leaves out has the default of `PlanningSettings`.
 
-    An absent or false `self_margin_mm` leaves pairs of the robot with itself out.
+    A `self_margin_mm` of false leaves pairs of the robot with itself out.
     """
     default = PlanningSettings()
     with table.located():
@@ -94,6 +94,9 @@ def _sweep(table: Table, key: str, default: Sweep) -> Sweep:
 
 
 def _self_margin(table: Table) -> float | None:
+    default = PlanningSettings().self_margin
+    if not table.has("self_margin_mm"):
+        return default
     if table.get("self_margin_mm", "a number in mm, or false", False) is False:
         return None
     return table.number("self_margin_mm", low=0.0)

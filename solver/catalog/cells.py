@@ -17,7 +17,7 @@ from solver.catalog.toml_reader import Table, read_toml
 from solver.catalog.tools import load_tool
 from solver.model.beam import STEEL_TOLERANCE, beam_workpiece, check_path_outside_steel
 from solver.model.problem import PlanningProblem
-from solver.model.robot import JOINTS, Robot
+from solver.model.robot import FLOOR_GROUP, JOINTS, Robot
 from solver.model.shapes import Body, Box
 from solver.model.tool import Tool
 from solver.model.toolpath import Frame
@@ -25,7 +25,6 @@ from solver.model.workpiece import BeamSection, Workpiece
 from solver.transforms import FloatArray, rigid
 from solver.units import DEG_PER_RAD
 
-FLOOR_GROUP: Final = "floor"
 FLOOR_SIZE: Final = (10.0, 10.0, 1.0)
 """The floor as a box below z = 0, centred on the robot [m]."""
 
@@ -198,6 +197,11 @@ def _position(
 def _fixtures(document: Table, head: Table) -> tuple[Body, ...]:
     """Bodies in the floor frame; the floor itself is one of them where the cell says so."""
     bodies = [_fixture(one) for one in document.tables("fixtures", ())]
+    for index, body in enumerate(bodies):
+        if FLOOR_GROUP in (body.name, body.group):
+            raise document.error(
+                f"fixtures[{index}].name", "the name 'floor' is kept for the floor of the cell"
+            )
     if head.boolean("floor", False):
         centre = (0.0, 0.0, -FLOOR_SIZE[2] / 2.0)
         bodies.append(Body("floor", Box(np.array(FLOOR_SIZE)), rigid(position=centre), FLOOR_GROUP))

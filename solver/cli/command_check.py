@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from solver.cli.output import emit_json, refused
-from solver.errors import InputError, RefusedError
+from solver.errors import InputError, RefusedError, UnknownNameError
 
 HELP = "check a program against its cell, on the nominal model"
 
@@ -46,7 +46,12 @@ def run(options: argparse.Namespace) -> int:
     if not cell:
         raise InputError(f"{options.program}: no remark names its cell; give it with --cell CELL")
     beam = options.beam or (None if options.cell else stated.get(BEAM_REMARK))
-    problem = load_cell(cell, beam=beam, path=options.path)
+    try:
+        problem = load_cell(cell, beam=beam, path=options.path)
+    except UnknownNameError as error:
+        if options.cell:
+            raise
+        raise InputError(f"{error}; give the file of the program's cell with --cell") from error
     checks = check_program(problem, written, required_clearance(problem, written))
     failed = [check for check in checks if not check.passed]
     if options.as_json:

@@ -10,6 +10,7 @@ from solver.cli.arguments import six_numbers
 from solver.cli.command_fk import pose_from_xyzwpr
 from solver.cli.csv_rows import read_rows
 from solver.cli.output import emit_json
+from solver.transforms import FloatArray
 from solver.units import DEG_PER_RAD
 
 HELP = "inverse kinematics: all joint solutions of poses in fanuc_world"
@@ -46,7 +47,7 @@ def run(options: argparse.Namespace) -> int:
             {
                 "pose": row,
                 "solutions": [
-                    {"branch": int(branch), "config": config, "joints_deg": joints * DEG_PER_RAD}
+                    {"branch": int(branch), "config": config, "joints_deg": _degrees(joints)}
                     for joints, branch, config in zip(
                         found.joints, found.branch, found.config, strict=True
                     )
@@ -61,6 +62,12 @@ def run(options: argparse.Namespace) -> int:
     if options.as_json != "-":
         _print(results)
     return 0 if all(one["solutions"] for one in results) else NO_SOLUTION
+
+
+def _degrees(joints: FloatArray) -> FloatArray:
+    """Joints in degrees to 1e-9, without a negative zero."""
+    degrees: FloatArray = np.round(joints * DEG_PER_RAD, 9) + 0.0
+    return degrees
 
 
 def _print(results: list[dict]) -> None:  # type: ignore[type-arg]

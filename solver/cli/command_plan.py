@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
     from solver.analysis.report import result_document, summary
     from solver.catalog import load_cell
     from solver.pipeline.planning import plan
-    from solver.pipeline.programming import check_output_name, write_program
+    from solver.pipeline.programming import check_program_settings, write_program
 
     accepted = None
     if options.accept_clearance is not None:
@@ -62,7 +62,7 @@ def run(options: argparse.Namespace) -> int:
         problem = replace(problem, settings=replace(problem.settings, scheme=scheme))
     target = Path(options.out or f"{problem.program.name}.LS")
     if not options.no_program:
-        check_output_name(target)
+        check_program_settings(problem, target)
     monitor = TerminalMonitor()
     started = time.perf_counter()
     try:

@@ -21,25 +21,14 @@ from solver.units import MM, MM_PER_M
 
 DEFAULT_TOLERANCE: Final = 0.2 * MM
 TOLERANCES: Final = (1e-6, 10.0 * MM)
-NO_AREA: Final = 1e-12
-"""Height of a triangle over its longest side, relative to that side, that counts as none."""
-
 CORE: Final = 1e-7
 """Half the width [m] of the polyhedron that stands for a point or a segment."""
 
 
 def bvh_model(vertices: FloatArray, faces: IntArray) -> Any:
-    """Bounding-volume hierarchy of python-fcl over the triangles that have an area.
-
-    For a triangle without area fcl can state too small a distance, and nearest points that do
-    not belong to it. On a closed surface its points lie on the edges of its neighbours.
-    """
+    """Bounding-volume hierarchy of python-fcl over triangles."""
     import fcl  # noqa: PLC0415 - loaded with the first mesh, not with the solver
 
-    corners = vertices[faces]
-    sides = corners - np.roll(corners, 1, axis=1)
-    area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
-    faces = faces[area > NO_AREA * (sides**2).sum(axis=2).max(axis=1)]
     model = fcl.BVHModel()
     model.beginModel(len(vertices), len(faces))
     model.addSubModel(vertices, faces)

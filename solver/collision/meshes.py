@@ -36,7 +36,8 @@ def load_mesh(path: str | Path, unit: Unit = "mm") -> Mesh:
     Returns
     -------
     Mesh
-        In metres, wound outward (a mesh that is wholly inside out is turned).
+        In metres, wound outward (a mesh that is wholly inside out is turned), along the axes
+        of the file; glTF means y upward, and nothing is turned here.
 
     Raises
     ------

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from solver.collision.distance import pack_shape
 from solver.kinematics.arm import link_offsets
 from solver.model.problem import PlanningProblem
+from solver.model.robot import FLOOR_GROUP, TOOL_GROUP
 from solver.model.shapes import (
     Body,
     Box,
@@ -37,7 +38,6 @@ from solver.model.shapes import (
 from solver.transforms import FloatArray, IntArray, inverse, rigid
 
 NO_PAIR, CLEARANCE, MARGIN, CONTACT = 0, 1, 2, 3
-TOOL_GROUP = "tool"
 NO_TOUCH = -1
 
 
@@ -95,6 +95,11 @@ class BodyLabel:
     group: str
     name: str
     role: ToolRole | None = None
+
+    @property
+    def is_floor(self) -> bool:
+        """Whether this is the floor; its name is reserved among fixtures."""
+        return self.owner == "fixture" and self.name == FLOOR_GROUP
 
     def __str__(self) -> str:
         return self.group if self.group == self.name else f"{self.group} ({self.name})"
@@ -235,6 +240,12 @@ def _rule_of(label: BodyLabel) -> int:
 
 
 def _are_neighbours(problem: PlanningProblem, one: BodyLabel, other: BodyLabel) -> bool:
+    """Whether two bodies always touch; `one` moves.
+
+    Of what stands still only the floor can be a neighbour, whatever else bears its name.
+    """
+    if other.owner == "workpiece" or (other.owner == "fixture" and not other.is_floor):
+        return False
     names = (TOOL_GROUP if x.owner == "tool" else x.group for x in (one, other))
     return frozenset(names) in problem.robot.neighbours
 

@@ -183,7 +183,7 @@ def check_path_outside_steel(problem: PlanningProblem, allowance: float = STEEL_
     others = f", and {len(inside) - 1} more of its points" if len(inside) > 1 else ""
     raise ModelError(
         f"the path {problem.toolpath.source or problem.name} enters the steel of beam "
-        f"{piece.section.name}: pass {name}, waypoint {first} at x {x:.3f}, y {y:.3f}, "
+        f"{piece.section.name}: pass {name}, waypoint {first + 1} at x {x:.3f}, y {y:.3f}, "
         f"z {z:.3f} mm of the beam frame lies {depth[first] * MM_PER_M:.3f} mm deep"
         f"{others}; expected at most {allowance * MM_PER_M:g} mm"
     )

@@ -14,6 +14,12 @@ from solver.transforms import FloatArray, frozen
 
 JOINTS = 6
 
+TOOL_GROUP = "tool"
+"""Name among the neighbours that stands for all bodies of the tool; no group of the robot."""
+
+FLOOR_GROUP = "floor"
+"""Name among the neighbours that stands for the floor; no group of the robot."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LinkBody:
@@ -85,6 +91,12 @@ class Robot:
         put(self, "cost_ranges", frozen(self.cost_ranges, (JOINTS,)))
         put(self, "body_sets", MappingProxyType(dict(self.body_sets)))
         self._check_structure()
+        groups = {one.body.group for bodies in self.body_sets.values() for one in bodies}
+        if reserved := groups & {TOOL_GROUP, FLOOR_GROUP}:
+            raise ModelError(
+                f"robot {self.name}: {sorted(reserved)[0]!r} cannot be a group of its bodies, "
+                "since it names the tool or the floor among the neighbours"
+            )
         for joint, (low, high) in enumerate(self.limits, start=1):
             if not low < high:
                 raise ModelError(f"robot {self.name}: J{joint} limits are empty or reversed")

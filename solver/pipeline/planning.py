@@ -126,7 +126,7 @@ def exact_sequence(
         if not len(low):
             return sequence_of(candidates, Scheme.EXACT, nodes, outcome.cost), extra, hard
         allowed = allowed & ~np.isin(np.arange(len(clearance)), low)
-    hard = best_minimum_clearance(graph, clearance)
+    hard = best_minimum_clearance(graph, clearance, monitor)
     found = _search_allowed(graph, clearance >= hard, monitor) if hard > -np.inf else None
     if found is None:
         raise no_sequence(candidates, graph)

@@ -12,8 +12,7 @@ from solver.analysis.result import PlanningResult, Sequence
 from solver.costs.steps import gap_times
 from solver.errors import InputError, RefusedError
 from solver.io.ls_program import ProgramFile
-from solver.io.posts.fanuc_text import program_name
-from solver.io.posts.post import PostOptions
+from solver.io.posts.fanuc_joint import render_fanuc_joint
 from solver.io.verified_program import write_verified
 from solver.model.problem import PlanningProblem
 from solver.model.program import JointProgram, Move, rounded_joints
@@ -46,7 +45,6 @@ def build_program(
     each pass goes at the cell's approach speed and ends FINE.
     """
     problem, sequence = result.problem, sequence or result.sequence
-    settings = problem.program
     times = gap_times(problem)
     events = _events(problem)
     joints = rounded_joints(sequence.pendant)
@@ -59,7 +57,7 @@ def build_program(
         moves.append(
             Move(
                 joints=row,
-                percent=settings.approach_percent if np.isnan(arriving) else None,
+                percent=problem.program.approach_percent if np.isnan(arriving) else None,
                 duration=None if np.isnan(arriving) else arriving,
                 # What happens at a waypoint happens there, not while its corner is being cut.
                 cnt=None if fine or index in events else 100,
@@ -67,13 +65,20 @@ def build_program(
                 events=events.get(index, ()),
             )
         )
+    return _program(problem, name or problem.program.name, tuple(moves), accepted_clearance)
+
+
+def _program(
+    problem: PlanningProblem, name: str, moves: tuple[Move, ...], accepted: float | None
+) -> JointProgram:
+    settings = problem.program
     return JointProgram(
-        name=(name or settings.name).upper(),
+        name=name.upper(),
         comment=settings.comment,
-        remarks=_remarks(problem, accepted_clearance),
+        remarks=_remarks(problem, accepted),
         uframe=settings.uframe,
         utool=settings.utool,
-        moves=tuple(moves),
+        moves=moves,
         date=settings.date,
         time=settings.time,
     )
@@ -138,11 +143,18 @@ def _down(clearance: float) -> str:
     return f"{np.floor(clearance * MM_PER_M * 10.0) / 10.0:.1f}"
 
 
-def check_output_name(path: Path) -> None:
-    """Refuse a file whose name no controller would load, before anything is planned."""
+def check_program_settings(problem: PlanningProblem, path: Path) -> None:
+    """Refuse, before anything is planned, what no program could be written with.
+
+    The file's name, the frame and tool numbers, the comment and the remarks are rendered with
+    a single position.
+    """
     if path.suffix.upper() != ".LS":
         raise InputError(f"{path}: a FANUC program file ends in .LS")
-    program_name(path.stem.upper(), PostOptions().name_length)
+    if not path.absolute().parent.is_dir():
+        raise InputError(f"{path}: there is no folder {path.parent}")
+    home = Move(joints=np.zeros(6), percent=problem.program.approach_percent)
+    render_fanuc_joint(_program(problem, path.stem, (home,), None))
 
 
 def required_clearance(problem: PlanningProblem, written: ProgramFile) -> float:

@@ -94,3 +94,17 @@ def test_an_explanation_names_the_mesh(problem):
     candidates = generate(changed)
     found = explain(changed, 2, 12.0 * DEG, 0, scene=candidates.scene)
     assert any("obstacle" in one.subject for one in found.filters)
+
+
+@pytest.mark.parametrize("name", ["tool", "forearm", "base", "wrist"])
+def test_a_fixture_named_like_a_part_of_the_robot_is_checked_like_any_other(problem, name):
+    """Such a name once made neighbours of the two, and their pairs were left out."""
+    size = np.full(3, 0.040)
+    plain = near_obstacle(problem, Box(size))
+    body = plain.fixtures[-1]
+    named = replace(
+        problem, fixtures=(*problem.fixtures, Body(name, body.shape, body.pose, group=name))
+    )
+    expected, found = generate(plain), generate(named)
+    assert found.scene.pair_count == expected.scene.pair_count
+    assert np.array_equal(found.outcome, expected.outcome)

@@ -150,7 +150,7 @@ def test_a_path_that_ends_in_the_steel_of_another_beam_says_where():
     beyond = (np.hypot(y - 20.0, z - 72.0) - 16.0 > 0.5) & (z > 72.0)
     first = int(np.flatnonzero(beyond)[0])
     depth = math.hypot(y - 20.0, z[first] - 72.0) - 16.0
-    assert f"waypoint {first} at x {-300 + 600 * first / 49:.3f}, y 13.000" in sentence
+    assert f"waypoint {first + 1} at x {-300 + 600 * first / 49:.3f}, y 13.000" in sentence
     assert f"z {z[first]:.3f} mm of the beam frame lies {depth:.3f} mm deep" in sentence
     # Later points lie in the flange, 88 to 100 mm, until the last two come out of its far side.
     deep = np.minimum(z - 88.0, 100.0 - z) > 0.5
@@ -394,7 +394,7 @@ def test_step_limits_and_weights_arrive_in_si(own_cell):
     assert np.isinf(read.steps.link_joints).all()
     assert read.steps.at_feed
     assert read.edge_cost is EdgeCost.SQUARED
-    assert read.self_margin is None
+    assert read.self_margin == pytest.approx(0.010)
 
 
 def test_a_section_object_may_replace_the_beam():

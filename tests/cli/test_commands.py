@@ -286,3 +286,28 @@ def test_the_first_run_says_that_kernels_are_compiled(capsys):
 
     TerminalMonitor().report(COMPILING, 0, 1)
     assert "compiling the kernels" in capsys.readouterr().err
+
+
+def test_what_no_program_could_carry_is_refused_before_planning(here, capsys, monkeypatch):
+    from solver.pipeline import planning
+
+    def unreachable(*_, **__):
+        raise AssertionError("planned although nothing could be written")
+
+    monkeypatch.setattr(planning, "plan", unreachable)
+    cells = Path(__file__).parents[2] / "resources" / "cells"
+    text = (cells / "groove_paper.toml").read_text("utf-8")
+    name = "a_name_that_does_not_fit_a_remark"
+    (here / "long.toml").write_text(text.replace('name = "groove_paper"', f'name = "{name}"'))
+    code, _, err = run(capsys, "plan", "long.toml", "--out", "A.LS")
+    assert code == 2
+    assert name in err
+
+
+def test_check_of_a_cell_that_is_not_shipped_asks_for_its_file(here, capsys):
+    run(capsys, "plan", "--out", "G.LS")
+    text = (here / "G.LS").read_bytes().replace(b"!CELL groove_hw300", b"!CELL my_own_cell")
+    (here / "G.LS").write_bytes(text)
+    code, _, err = run(capsys, "check", "G.LS")
+    assert code == 2
+    assert "--cell" in err

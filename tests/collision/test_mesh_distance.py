@@ -20,7 +20,7 @@ from solver.collision.mesh_distance import (
     lower_bounds,
     mesh_clearance,
 )
-from solver.collision.mesh_proxy import ConvexProxy, box_triangles, bvh_model
+from solver.collision.mesh_proxy import ConvexProxy, box_triangles
 from solver.errors import InputError, ModelError
 from solver.model.shapes import Box, Capsule, Cylinder, Hull, Mesh, Sphere
 
@@ -270,28 +270,6 @@ def test_triangles_without_area_change_no_distance():
             assert found.distance == pytest.approx(expected.distance, abs=1e-9)
         else:
             assert found.distance <= 0.0
-
-
-def test_a_triangle_without_area_for_which_fcl_states_too_little_changes_no_distance():
-    first = np.array(
-        [
-            [0.00353585, -0.12364577, 0.24473914],
-            [-0.04474071, 0.18641613, -0.42576793],
-            [0.48657494, 0.34612962, 0.16856439],
-        ]
-    )
-    start, along = np.array([0.69502571, 0.3257811, 0.14080106]), np.array([0.8297, 0.0899, 0.0652])
-    edge = [start + along, start - 0.44255600359455993 * along]
-    vertices = np.array([*edge, start, start + 0.5])
-    faces = np.array([[0, 1, 3], [0, 1, 2]])
-    expected = triangle_distance(first[None], vertices[faces[:1]])
-    fcl = pytest.importorskip("fcl")
-    objects = [
-        fcl.CollisionObject(bvh_model(v, f), fcl.Transform())
-        for v, f in ((first, np.array([[0, 1, 2]])), (vertices, faces))
-    ]
-    found = fcl.distance(*objects, fcl.DistanceRequest(), fcl.DistanceResult())
-    assert found == pytest.approx(expected, abs=1e-12)
 
 
 def test_moving_both_bodies_together_keeps_the_clearance():

@@ -166,6 +166,10 @@ def test_rejected_candidates_break_what_their_outcome_names(sample, distances):
                 assert found.tool_spare > -TOLERANCE
 
 
+REACHING_DOWN = np.array([[-60, 20, -90, -180, -110, -180], [30, 90, -30, 180, 110, 180]]) * DEG
+"""Range of joints in which the tool comes near trestles, floor and the beam's underside."""
+
+
 class Postures:
     """Postures round the nodes of the full cell, as the product's check sees them."""
 
@@ -181,14 +185,15 @@ class Postures:
         self.touch = np.where(np.arange(count) % 2, self.scene.touch_number("web"), -1)
 
     def check(self, pendant, touch):
-        """Status and clearance, at unrounded joints."""
+        """Status, clearance and nearest bodies, at unrounded joints."""
         model = np.array([oracle.model_of(joints) for joints in pendant])
-        return pose_of_joints(self.arm, self.scene.packed, model, touch)[:2]
+        status, clearance, nearest, _ = pose_of_joints(self.arm, self.scene.packed, model, touch)
+        return status, clearance, [self.scene.fixed[row].name for row in nearest[:, 1]]
 
     def flips(self):
         """Postures just behind the place where a verdict changes, what broke there, and touch."""
         inside, outside = (self.check(one, self.touch)[0] == 0 for one in (self.one, self.other))
-        kept = inside & ~outside
+        kept = np.flatnonzero(inside & ~outside)
         free, broken, touch = self.one[kept], self.other[kept], self.touch[kept]
         for _ in range(50):
             middle = (free + broken) / 2
@@ -218,10 +223,21 @@ def test_a_verdict_flips_where_the_oracle_meets_the_threshold(postures, distance
 
 
 def test_clearance_is_exact_away_from_the_path_as_well(postures, distances):
-    status, clearance = postures.check(postures.one, postures.touch)
-    for index in np.flatnonzero(status == 0)[:300]:
+    status, clearance, _ = postures.check(postures.one, postures.touch)
+    for index in np.flatnonzero(status == 0)[::3]:
         exact = distances[oracle.FULL].margins(postures.one[index]).clearance
         assert abs(clearance[index] - exact) <= TOLERANCE
+
+
+def test_clearance_is_exact_where_trestles_and_floor_are_nearest(postures, distances):
+    low = np.random.default_rng(11).uniform(*REACHING_DOWN, (20_000, 6))
+    status, clearance, names = postures.check(low, np.full(len(low), -1))
+    for name in ("trestle_near", "trestle_far", "floor"):
+        rows = [row for row, near in enumerate(names) if near == name and status[row] == 0][:40]
+        assert len(rows) >= 10
+        for row in rows:
+            exact = distances[oracle.FULL].margins(low[row]).clearance
+            assert abs(clearance[row] - exact) <= TOLERANCE
 
 
 def test_the_slices_of_a_fillet_never_overstate_the_clearance_from_the_steel(distances):

@@ -67,7 +67,7 @@ def test_windows_that_exclude_everything_are_named_with_the_joint(problem):
     windows = problem.robot.limits.copy()
     windows[4] = (100.0 * DEG, 120.0 * DEG)
     error = failure(replace(problem, joint_windows=windows))
-    assert "J5 misses by" in str(error)
+    assert "deg are missing: J5" in str(error)
 
 
 def test_steps_that_are_too_large_name_the_gap_and_the_joint(problem):

@@ -197,3 +197,13 @@ def test_the_program_says_where_it_comes_from(written):
     assert "!BEAM HW300 ;" in text
     assert not re.search(r"\b20[2-9]\d-", text)
     assert Path("GROOVE.LS").stem in text.splitlines()[0]
+
+
+def test_self_pairs_that_a_cell_leaves_out_are_called_not_checked(written):
+    result, text = written
+    settings = replace(result.problem.settings, self_margin=None)
+    checks = check_program(
+        replace(result.problem, settings=settings), read_program(text, "GROOVE.LS"), 50.0 * MM
+    )
+    one = next(check for check in checks if check.name == "robot against itself")
+    assert "NOT CHECKED" in one.detail
