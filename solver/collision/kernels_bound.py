@@ -11,7 +11,7 @@ from solver.collision.kernels_shapes import (
     row_of_vectors,
     vector_numbers,
 )
-from solver.kernel import kernel
+from solver.kernel import inline_kernel, kernel
 
 
 @kernel
@@ -75,7 +75,7 @@ def quick_lower_bound(
     )
 
 
-@kernel
+@inline_kernel
 def row_lower_bound(
     kinds_a, sizes_a, rotations_a, positions_a, i, kinds_b, sizes_b, rotations_b, positions_b, j
 ):

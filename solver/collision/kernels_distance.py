@@ -245,7 +245,7 @@ def convex_distance(
     )
 
 
-@kernel
+@inline_kernel
 def row_distance(
     bodies_a,
     rotations_a,

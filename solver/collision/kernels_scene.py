@@ -6,7 +6,7 @@ import numpy as np
 
 from solver.collision.kernels_bound import row_lower_bound
 from solver.collision.kernels_distance import row_distance
-from solver.kernel import kernel
+from solver.kernel import inline_kernel, kernel
 
 FREE = 0
 HIT = 1
@@ -20,7 +20,7 @@ _CLEARANCE = 1
 _CONTACT = 3
 
 
-@kernel
+@inline_kernel
 def place_bodies(scene, first, last, frames, rotations, positions):
     """Poses of moving bodies first..last-1 in fanuc_world from the (7, 3, 4) D-H frames."""
     for m in range(first, last):
@@ -40,7 +40,7 @@ def place_bodies(scene, first, last, frames, rotations, positions):
             )
 
 
-@kernel
+@inline_kernel
 def pair_threshold(scene, m, f, touch):
     """Least allowed distance of a margin or contact pair when the pass touches group `touch`."""
     if scene.rule[m, f] == _CONTACT and touch >= 0 and scene.touch_group[f] == touch:
@@ -48,7 +48,7 @@ def pair_threshold(scene, m, f, touch):
     return scene.threshold[m, f]
 
 
-@kernel
+@inline_kernel
 def fixed_distance(scene, rotations, positions, m, f, cutoff, wants_depth, witness):
     """Certified distance of moving body m to fixed body f; only a bound above `cutoff`."""
     return row_distance(
@@ -66,7 +66,7 @@ def fixed_distance(scene, rotations, positions, m, f, cutoff, wants_depth, witne
     )
 
 
-@kernel
+@inline_kernel
 def self_distance(scene, rotations, positions, a, b, cutoff, wants_depth, witness):
     """Certified distance of two moving bodies; only a bound above `cutoff`."""
     return row_distance(
@@ -84,7 +84,7 @@ def self_distance(scene, rotations, positions, a, b, cutoff, wants_depth, witnes
     )
 
 
-@kernel
+@inline_kernel
 def _fixed_bound(scene, rotations, positions, m, f):
     return row_lower_bound(
         scene.moving.kind,
@@ -100,7 +100,7 @@ def _fixed_bound(scene, rotations, positions, m, f):
     )
 
 
-@kernel
+@inline_kernel
 def _cluster_bound(scene, positions, m, c):
     """Distance of a moving body's bounding sphere to the box around a cluster, never too large."""
     dx = positions[m, 0] - scene.cluster_position[c, 0]
@@ -119,7 +119,7 @@ def _cluster_bound(scene, positions, m, c):
     return math.sqrt(total) - scene.radius[m] - ROUNDING
 
 
-@kernel
+@inline_kernel
 def check_bodies(scene, first, last, touch, best, rotations, positions, witness, nearest, points):
     """Check placed moving bodies first..last-1 against the fixed ones; stop when one is out.
 
@@ -161,7 +161,7 @@ def check_bodies(scene, first, last, touch, best, rotations, positions, witness,
     return FREE, best
 
 
-@kernel
+@inline_kernel
 def check_self(scene, rotations, positions, witness):
     """Whether every self pair of the placed bodies keeps its margin."""
     for p in range(scene.self_pairs.shape[0]):
