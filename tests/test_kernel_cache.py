@@ -28,6 +28,8 @@ def test_an_edited_kernel_reaches_the_kernels_that_call_it_from_the_cache(tmp_pa
     environment = os.environ | {
         "PYTHONPATH": str(tmp_path),
         "NUMBA_CACHE_DIR": str(tmp_path / "cache"),
+        # The edit below keeps time and size, by which Python would take its old bytecode.
+        "PYTHONDONTWRITEBYTECODE": "1",
     }
 
     def run():

@@ -86,6 +86,17 @@ def test_source_files_have_at_most_450_lines():
     assert {name: size for name, size in sizes.items() if size > 450} == {}
 
 
+def test_no_pattern_repeats_a_group_possessively():
+    # Before 3.11.5 (Debian 12 has 3.11.2) `re` keeps what a failed repetition of `(...)*+` took.
+    found = [
+        f"{name_of(path)}: {pattern}"
+        for path in FILES
+        if path.suffix == ".py" and path.is_relative_to(REPOSITORY / "solver")
+        for pattern in re.findall(r"\)(?:[*+?]|\{\d*,?\d*\})\+|\(\?>", path.read_text("utf-8"))
+    ]
+    assert found == []
+
+
 def test_test_files_have_unique_names_and_no_package():
     names = [path.name for path in FILES if path.is_relative_to(REPOSITORY / "tests")]
     modules = [name for name in names if name.startswith("test_")]

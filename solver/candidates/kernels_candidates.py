@@ -7,7 +7,6 @@ import numpy as np
 from solver.collision.kernels_scene import (
     FREE,
     check_bodies,
-    check_pose,
     check_self,
     place_bodies,
 )
@@ -131,37 +130,34 @@ def evaluate_poses(
             if manipulability(arm, solved[branch]) <= eta:
                 outcome[n, o, b] = _SINGULAR
                 continue
-            if tool_status == _UNKNOWN:
-                frames[6] = wrist
-                place_bodies(scene, scene.tool, bodies, frames, rotations, positions)
-                tool_status, tool_clearance = check_bodies(
-                    scene,
-                    scene.tool,
-                    bodies,
-                    touch[n],
-                    np.inf,
-                    rotations,
-                    positions,
-                    witness,
-                    nearest,
-                    points,
-                )
             status, d = tool_status, tool_clearance
-            if status == FREE:
-                forward_frames(arm, solved[branch], frames)
-                place_bodies(scene, 0, scene.tool, frames, rotations, positions)
+            # First the tool, if no branch of this pose has come so far, then the robot.
+            for stage in range(2):
+                if stage == 0:
+                    if tool_status != _UNKNOWN:
+                        continue
+                    frames[6] = wrist
+                    first, last, best = scene.tool, bodies, np.inf
+                elif status != FREE:
+                    break
+                else:
+                    forward_frames(arm, solved[branch], frames)
+                    first, last, best = 0, scene.tool, tool_clearance
+                place_bodies(scene, first, last, frames, rotations, positions)
                 status, d = check_bodies(
                     scene,
-                    0,
-                    scene.tool,
+                    first,
+                    last,
                     touch[n],
-                    tool_clearance,
+                    best,
                     rotations,
                     positions,
                     witness,
                     nearest,
                     points,
                 )
+                if stage == 0:
+                    tool_status, tool_clearance = status, d
             if status == FREE:
                 status = check_self(scene, rotations, positions, witness)
                 d = d if status == FREE else np.nan
@@ -234,9 +230,25 @@ def pose_of_joints(arm, scene, model, touch):
     rotations = np.empty((bodies, 3, 3))
     positions = np.empty((bodies, 3))
     witness = np.empty((2, 3))
+    begin = np.int64(0)  # a plain number: a literal would compile check_bodies once more
     for k in range(count):
         forward_frames(arm, model[k], frames)
-        status[k], clearance[k] = check_pose(
-            scene, frames, touch[k], rotations, positions, witness, nearest[k], points[k]
+        place_bodies(scene, begin, bodies, frames, rotations, positions)
+        nearest[k] = -1
+        status[k], clearance[k] = check_bodies(
+            scene,
+            begin,
+            bodies,
+            touch[k],
+            np.inf,
+            rotations,
+            positions,
+            witness,
+            nearest[k],
+            points[k],
         )
+        if status[k] == FREE:
+            status[k] = check_self(scene, rotations, positions, witness)
+            if status[k] != FREE:
+                clearance[k] = np.nan
     return status, clearance, nearest, points

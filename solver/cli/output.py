@@ -19,7 +19,9 @@ from solver.progress import COMPILING
 _BAR = 28
 _FIRST_SHOWN = 0.5
 _INTERVAL = 0.1
-_COMPILING_NOTE = "compiling the kernels; this takes a minute, once after an installation or update"
+_COMPILING_NOTE = (
+    "compiling the kernels; this takes a minute or two, once after an installation or update"
+)
 
 
 class TerminalMonitor:

@@ -194,26 +194,6 @@ def check_self(scene, rotations, positions, witness):
 
 
 @kernel
-def check_pose(scene, frames, touch, rotations, positions, witness, nearest, points):
-    """Outcome and clearance of one posture; stops at the first pair that is out.
-
-    `rotations` (m, 3, 3), `positions` (m, 3) and `witness` (2, 3) are work space; `nearest`
-    (2,) receives the rows of the clearance pair, -1 for none, and `points` (2, 3) its nearest
-    points. Returns the outcome and the clearance d [m] (inf when no pair counts in d).
-    """
-    bodies = scene.frame.shape[0]
-    nearest[0] = -1
-    nearest[1] = -1
-    place_bodies(scene, 0, bodies, frames, rotations, positions)
-    status, d = check_bodies(
-        scene, 0, bodies, touch, np.inf, rotations, positions, witness, nearest, points
-    )
-    if status == FREE and check_self(scene, rotations, positions, witness) != FREE:
-        return SELF_BROKEN, np.nan
-    return status, d
-
-
-@kernel
 def all_distances(scene, frames, rotations, positions, fixed, among, fixed_points, among_points):
     """Distances of every pair with a rule: `fixed` (m, f), `among` (p,), points (.., 2, 3).
 

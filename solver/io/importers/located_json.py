@@ -28,11 +28,11 @@ _LONGEST_ROW: Final = 2000
 
 _LINE_END: Final = re.compile(r"\r\n|\n|\r")
 _BLANK: Final = re.compile(r"[ \t\r\n]*+")
-_STRING: Final = re.compile(r'"[^"\\\x00-\x1f]*+(?:\\.[^"\\\x00-\x1f]*+)*+"')
+_STRING: Final = re.compile(r'"[^"\\\x00-\x1f]*+(?:\\.[^"\\\x00-\x1f]*+)*"')
 _WORD: Final = re.compile(r'[^\s,:\[\]{}"]++')
 _NUMBER: Final = re.compile(r"-?(?:0|[1-9][0-9]*)(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?")
 _NUMBERS: Final = re.compile(
-    r"\[([ \t\r\n]*+N[ \t\r\n]*+(?:,[ \t\r\n]*+N[ \t\r\n]*+)*+)\]".replace("N", _NUMBER.pattern)
+    r"\[([ \t\r\n]*+N[ \t\r\n]*+(?:,[ \t\r\n]*+N[ \t\r\n]*+)*)\]".replace("N", _NUMBER.pattern)
 )
 _SURROGATE: Final = re.compile("[\ud800-\udfff]")
 _LITERALS: Final = {"true": True, "false": False, "null": None}
