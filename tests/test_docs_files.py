@@ -52,6 +52,7 @@ def changed(base, fragment):
 def write_files(page, folder):
     """Write every file that a page shows; returns the TOML files in the page's order."""
     trimesh.creation.box((60.0, 40.0, 80.0)).export(folder / "clamp.stl")
+    trimesh.creation.box((400.0, 120.0, 20.0)).export(folder / "part.stl")
     written = []
     for number, (_, shown) in enumerate(blocks(page, "toml", "csv")):
         if change := CHANGE.match(shown):
@@ -115,6 +116,7 @@ HEADINGS = {
     "[robot.windows_deg]": ("cell", "robot.windows_deg"),
     "[tool]": ("cell", "tool"),
     "[beam]": ("cell", "beam"),
+    "[workpiece]": ("cell", "workpiece"),
     "[[fixtures]]": ("cell", "fixtures"),
     "[path]": ("cell", "path"),
     "[path.line]": ("cell", "path.line"),

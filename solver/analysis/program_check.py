@@ -19,7 +19,7 @@ from solver.kinematics.jacobian import posture_manipulability
 from solver.model.problem import PlanningProblem
 from solver.model.settings import Sweep
 from solver.transforms import FloatArray
-from solver.units import DEG, DEG_PER_RAD, MM, MM_PER_M
+from solver.units import DEG, DEG_PER_RAD, MM, MM_PER_M, TURN
 
 POSITION_TOLERANCE = 0.05 * MM
 """How far a rounded position may lie from its waypoint: 3 decimals of a degree at 2 m reach."""
@@ -112,6 +112,8 @@ def _path_checks(problem: PlanningProblem, pendant: FloatArray) -> list[Check]:
         ("lead", lead, settings.lead),
         ("spin", spin, settings.spin),
     ):
+        middle = (sweep.lower + sweep.upper) / 2.0
+        angle = middle + np.remainder(angle - middle + np.pi, TURN) - np.pi  # noqa: PLW2901
         beyond, at = _worst(_outside(angle, sweep))
         checks.append(
             Check(

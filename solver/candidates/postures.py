@@ -37,7 +37,14 @@ def check_postures(
 
     `touch` (k,) is the number of the workpiece group that each pass touches, -1 for none.
     """
-    model = rounded_joints(pendant) @ robot.model_from_pendant.T
+    return check_exact_postures(robot, scene, rounded_joints(pendant), touch)
+
+
+def check_exact_postures(
+    robot: Robot, scene: CollisionScene, pendant: FloatArray, touch: NDArray[np.int64]
+) -> PostureChecks:
+    """Check pendant joints (k, 6) [rad] as they are; see `check_postures`."""
+    model = pendant @ robot.model_from_pendant.T
     arm = np.array(robot.arm_lengths)
     status, clearance, nearest, points = pose_of_joints(arm, scene.packed, model, touch)
     names = [

@@ -7,11 +7,13 @@ A body is ``{ name, group?, shape, ... }`` with
 - ``shape = "cylinder"`` (flat ends) or ``"capsule"``: the ends `from_mm` and `to_mm` of the axis
   (of a capsule: the centres of its round ends) and `radius_mm`;
 - ``shape = "sphere"``: `centre_mm` and `radius_mm`.
+
+What stands still may be a triangle mesh instead: `mesh`, a file beside the TOML file, and `unit`.
 """
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 
@@ -39,6 +41,23 @@ def read_body(table: Table, inflation: float = 0.0) -> Body:
         if shape == "sphere":
             return Body(name, *_sphere(table, inflation), group)
         return Body(name, *_round_bar(table, shape, inflation), group)
+
+
+def read_mesh_body(table: Table, pose: FloatArray) -> Body:
+    """Read a body whose shape is a mesh file; `pose` (4, 4) is its owner_from_body.
+
+    Raises
+    ------
+    InputError
+        If a key is missing or wrong, or the file is no usable closed mesh.
+    """
+    from solver.collision.meshes import load_mesh  # noqa: PLC0415 - trimesh only where used
+
+    name = table.name("name")
+    group = table.name("group") if table.has("group") else name
+    unit: Literal["mm", "m"] = "mm" if table.choice("unit", ("mm", "m"), "mm") == "mm" else "m"
+    with table.located("mesh"):
+        return Body(name, load_mesh(table.folder / table.text("mesh"), unit), pose, group)
 
 
 def read_rotation(table: Table, key: str = "wpr_deg") -> FloatArray:

@@ -7,9 +7,9 @@ The table `path` holds one of
   that another beam has the same path in proportion;
 - `parametric`: one or several passes along a face, at a distance from an edge.
 
-Beside it stands what the path does not say itself: `frame` and `unit` of a file,
-`orientation_wpr_deg` stated in `orientation_frame`, `touches`, `resample_mm`, `feed_mm_s`,
-`lean_deg`, `lead_deg`, `convention`.
+Beside it stands what the path does not say itself: `orientation_wpr_deg` stated in
+`orientation_frame`, `feed_mm_s`, `lean_deg`, `lead_deg`, `convention`; and beside a file alone its
+`frame`, `unit`, `touches` and `resample_mm`. Lines and passes along a face need a beam.
 """
 
 from __future__ import annotations
@@ -41,6 +41,14 @@ from solver.units import DEG, MM
 
 FRAMES: Final = tuple(frame.value for frame in Frame)
 KINDS: Final = ("file", "line", "parametric")
+
+FILE_KEYS: Final = {
+    "frame": "it lies in the frame of the beam",
+    "unit": "its lengths are in mm",
+    "touches": "it touches the group of its face",
+    "resample_mm": "its own keys state how far apart its points are",
+}
+"""Keys that only a file may have beside it, and why the other kinds need none."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,6 +91,8 @@ def read_path(table: Table, owner: PathOwner, override: Path | None = None) -> T
         table.get("file", f"one of the keys {', '.join(KINDS)}")
     if len(kinds) > 1:
         raise table.error(kinds[1], f"expected no second path beside {kinds[0]!r}")
+    if kinds[0] != "file":
+        _check_face_path(table, kinds[0], owner.workpiece)
     orientation = _orientation(table)
     with table.located():
         options = _options(table, owner)
@@ -97,6 +107,18 @@ def read_path(table: Table, owner: PathOwner, override: Path | None = None) -> T
         if isinstance(spec, FaceLine):
             return face_line_toolpath(owner.workpiece, spec)
         return parametric_toolpath(owner.workpiece, spec)
+
+
+def _check_face_path(table: Table, kind: str, workpiece: Workpiece) -> None:
+    """Refuse a path on a face where there is no face, or with keys that would change nothing."""
+    if workpiece.section is None:
+        raise table.error(
+            kind,
+            f"the workpiece {workpiece.name} is a mesh without the faces of a beam; state a file",
+        )
+    for key, reason in FILE_KEYS.items():
+        if table.has(key):
+            raise table.error(key, f"it belongs to a file, not to {kind!r}: {reason}; leave it out")
 
 
 def _load(
@@ -120,6 +142,8 @@ def _frame(table: Table, key: str) -> Frame | None:
 def _orientation(table: Table) -> _Orientation | None:
     frame = _frame(table, "orientation_frame")
     if not table.has("orientation_wpr_deg"):
+        if frame is not None:
+            raise table.error("orientation_frame", "expected orientation_wpr_deg, which it is for")
         return None
     return _Orientation(read_rotation(table, "orientation_wpr_deg"), frame)
 

@@ -1,35 +1,31 @@
-"""Cells as TOML: robot, tool, beam, fixtures, path and settings of one planning problem."""
+"""Cells as TOML: robot, tool, workpiece, fixtures, path and settings of one planning problem."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
-from solver.catalog.beams import load_beam, read_dimensions
-from solver.catalog.bodies import read_body, read_rotation
+from solver.catalog.bodies import read_body, read_mesh_body, read_rotation
 from solver.catalog.cell_path import PathOwner, read_path
 from solver.catalog.cell_settings import read_program, read_settings
+from solver.catalog.cell_workpiece import read_workpiece
 from solver.catalog.names import file_of
 from solver.catalog.robots import load_robot, read_sources
 from solver.catalog.toml_reader import Table, read_toml
 from solver.catalog.tools import load_tool
-from solver.model.beam import STEEL_TOLERANCE, beam_workpiece, check_path_outside_steel
+from solver.model.beam import STEEL_TOLERANCE, check_path_outside_steel
 from solver.model.problem import PlanningProblem
 from solver.model.robot import FLOOR_GROUP, JOINTS, Robot
 from solver.model.shapes import Body, Box
 from solver.model.tool import Tool
-from solver.model.toolpath import Frame
-from solver.model.workpiece import BeamSection, Workpiece
+from solver.model.workpiece import BeamSection
 from solver.transforms import FloatArray, rigid
 from solver.units import DEG_PER_RAD
 
 FLOOR_SIZE: Final = (10.0, 10.0, 1.0)
 """The floor as a box below z = 0, centred on the robot [m]."""
-
-DIMENSIONS: Final = ("height_mm", "width_mm", "web_mm", "flange_mm")
-PLACEMENT_FRAMES: Final = (Frame.FLOOR.value, Frame.FANUC_WORLD.value)
 
 
 def load_cell(
@@ -45,7 +41,8 @@ def load_cell(
     name_or_path : str or Path
         A shipped name, or a file (it ends in .toml or holds a separator).
     beam : str, Path or BeamSection, optional
-        Another section in place of the cell's; the rule of its placement is kept.
+        Another section in place of the cell's; the rule of its placement is kept. A cell whose
+        workpiece is a mesh refuses it.
     path : str or Path, optional
         Another path file, relative to the working directory, read with the cell's options; it
         states its frame itself.
@@ -72,7 +69,7 @@ def load_cell(
     tool_table = document.table("tool")
     with tool_table.located("model"):
         tool = load_tool(tool_table.text("model"), relative_to=document.folder)
-    workpiece = _workpiece(document.table("beam"), beam, robot)
+    workpiece = read_workpiece(document, beam, robot)
     fixtures = _fixtures(document, head)
     owner = PathOwner(workpiece, robot, tool)
     toolpath = read_path(document.table("path"), owner, None if path is None else Path(path))
@@ -139,61 +136,6 @@ def _window(table: Table, key: str) -> tuple[float, float]:
     return low, high
 
 
-def _workpiece(table: Table, beam: str | Path | BeamSection | None, robot: Robot) -> Workpiece:
-    own = _section(table)
-    section = own
-    if isinstance(beam, BeamSection):
-        section = beam
-    elif beam is not None:
-        section = load_beam(beam)
-    length = table.number("length_mm")
-    fillets = table.boolean("fillets", True)
-    rotation = read_rotation(table)
-    position = _position(table, section, length, rotation)
-    if table.choice("frame", PLACEMENT_FRAMES, Frame.FLOOR.value) == Frame.FANUC_WORLD.value:
-        position = position + np.array([0.0, 0.0, robot.world_height])
-    table.finish()
-    with table.located():
-        return beam_workpiece(section, length, rigid(rotation, position), fillets)
-
-
-def _section(table: Table) -> BeamSection:
-    """Find the section by name, or by its dimensions; a root radius may replace that of a name."""
-    if any(table.has(key) for key in DIMENSIONS):
-        name = table.name("section") if table.has("section") else "custom"
-        return read_dimensions(table, name, "stated by the cell")
-    name = table.text("section")
-    with table.located("section"):
-        section = load_beam(name, relative_to=table.folder)
-    if not table.has("root_mm"):
-        return section
-    with table.located("root_mm"):
-        return BeamSection(
-            section.name,
-            section.height,
-            section.width,
-            section.web,
-            section.flange,
-            table.number("root_mm", low=0.0),
-            f"{section.source}, root radius stated by the cell",
-        )
-
-
-def _position(
-    table: Table, section: BeamSection, length: float, rotation: FloatArray
-) -> FloatArray:
-    """Find the beam's centre: stated, or over a point of the plan with its lowest edge at a height.
-
-    The second rule keeps the beam on its supports when another section takes its place.
-    """
-    if table.has("lower_edge_mm") or table.has("position_xy_mm"):
-        x, y = table.numbers("position_xy_mm", 2)
-        half = np.array([length, section.width, section.height]) / 2.0
-        reach = float(np.abs(rotation[2]) @ half)
-        return np.array([x, y, table.number("lower_edge_mm") + reach])
-    return np.array(table.numbers("position_mm", 3))
-
-
 def _fixtures(document: Table, head: Table) -> tuple[Body, ...]:
     """Bodies in the floor frame; the floor itself is one of them where the cell says so."""
     bodies = [_fixture(one) for one in document.tables("fixtures", ())]
@@ -215,12 +157,5 @@ def _fixtures(document: Table, head: Table) -> tuple[Body, ...]:
 def _fixture(table: Table) -> Body:
     if not table.has("mesh"):
         return read_body(table)
-    from solver.collision.meshes import load_mesh  # noqa: PLC0415 - trimesh only where used
-
-    name = table.name("name")
-    group = table.name("group") if table.has("group") else name
-    unit: Literal["mm", "m"] = "mm" if table.choice("unit", ("mm", "m"), "mm") == "mm" else "m"
     position = table.numbers("position_mm", 3, (0.0, 0.0, 0.0))
-    pose = rigid(read_rotation(table), position)
-    with table.located("mesh"):
-        return Body(name, load_mesh(table.folder / table.text("mesh"), unit), pose, group)
+    return read_mesh_body(table, rigid(read_rotation(table), position))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Final
 
 from solver.catalog.bodies import read_body, read_rotation
 from solver.catalog.names import file_of
@@ -11,9 +12,15 @@ from solver.catalog.toml_reader import Table, read_toml
 from solver.model.shapes import ToolRole
 from solver.model.tool import Tool, ToolBody
 from solver.transforms import rigid
-from solver.units import MM
+from solver.units import MM, MM_PER_M
 
 ROLES = tuple(role.value for role in ToolRole)
+
+MAX_MARGIN: Final = 1000.0 * MM
+"""Largest margin of a near or contact body [m]; more is taken for a mistake of unit."""
+
+MAX_DEPTH: Final = 20.0 * MM
+"""Deepest that a contact body may enter what its pass touches [m]; no tool removes more."""
 
 
 def load_tool(name_or_path: str | Path, *, relative_to: Path | None = None) -> Tool:
@@ -49,8 +56,8 @@ def _tool_body(table: Table) -> ToolBody:
     with table.located():
         if role is ToolRole.CLEARANCE:
             return ToolBody(body, role)
-        margin = table.number("margin_mm", 2.0 * MM, low=0.0)
+        margin = table.number("margin_mm", 2.0 * MM, low=0.0, high=MAX_MARGIN * MM_PER_M)
         if role is ToolRole.NEAR:
             return ToolBody(body, role, margin=margin)
-        depth = table.number("depth_mm", 0.5 * MM, low=0.0)
+        depth = table.number("depth_mm", 0.5 * MM, low=0.0, high=MAX_DEPTH * MM_PER_M)
         return ToolBody(body, role, margin=margin, depth=depth)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import asdict
 
-from solver.cli.output import emit_json
+from solver.cli.output import emit_json, say
 from solver.errors import InputError
 
 HELP = "measure planning on the shipped cells, and the search against a plain Python A*"
@@ -47,7 +47,7 @@ def run(options: argparse.Namespace) -> int:
         emit_json(document, options.as_json)
     if options.as_json != "-":
         for plan in timings:
-            print(
+            say(
                 f"{plan.cell}: {plan.waypoints} waypoints, {plan.candidates:,} candidates, "
                 f"{100 * plan.feasible_share:.1f} % feasible, {plan.nodes:,} nodes, "
                 f"{plan.body_pairs} body pairs\n"
@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
             )
         for peer in peers:
             agreement = "the same costs" if peer.same_costs else "DIFFERENT costs"
-            print(
+            say(
                 f"{peer.cell}: plain Python A* ({agreement}, {peer.nodes:,} nodes)\n"
                 f"  scheme f takes {peer.plain_f / peer.exact:,.0f} times the exact search and "
                 f"{peer.plain_f / peer.f:,.0f} times ours\n"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from solver.cli.output import emit_json, refused
+from solver.cli.output import emit_json, refused, say
 from solver.errors import InputError, RefusedError, UnknownNameError
 
 HELP = "check a program against its cell, on the nominal model"
@@ -66,11 +66,11 @@ def run(options: argparse.Namespace) -> int:
         emit_json(document, options.as_json)
     if options.as_json != "-":
         for check in checks:
-            print(check)
+            say(str(check))
     if failed:
         names = ", ".join(check.name for check in failed)
         message = f"{len(failed)} of {len(checks)} checks failed: {names}"
         return refused(options.command, RefusedError(message))
     if options.as_json != "-":
-        print(f"all {len(checks)} checks passed on the nominal model of cell {problem.name}")
+        say(f"all {len(checks)} checks passed on the nominal model of cell {problem.name}")
     return 0

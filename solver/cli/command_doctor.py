@@ -6,7 +6,7 @@ import argparse
 import platform
 from importlib import metadata
 
-from solver.cli.output import emit_json, refused
+from solver.cli.output import emit_json, refused, say
 from solver.errors import RefusedError
 from solver.units import MM_PER_M
 
@@ -63,11 +63,11 @@ def run(options: argparse.Namespace) -> int:
         emit_json(document, options.as_json)
     if options.as_json != "-":
         for name, version in versions.items():
-            print(f"{name:<20} {version}")
-        print("resources            " + ", ".join(f"{n} {kind}" for kind, n in shipped.items()))
+            say(f"{name:<20} {version}")
+        say("resources            " + ", ".join(f"{n} {kind}" for kind, n in shipped.items()))
         for one in tests:
             word = "ok   " if one.ok else "WRONG"
-            print(f"{word} {one.name}: expected {one.expected:.6f} m, found {one.found:.6f} m")
+            say(f"{word} {one.name}: expected {one.expected:.6f} m, found {one.found:.6f} m")
     if failed:
         message = f"the self-test failed: {', '.join(failed)}"
         return refused(options.command, RefusedError(message))

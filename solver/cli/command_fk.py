@@ -8,7 +8,7 @@ import numpy as np
 
 from solver.cli.arguments import six_numbers
 from solver.cli.csv_rows import read_rows
-from solver.cli.output import emit_json
+from solver.cli.output import emit_json, say
 from solver.transforms import FloatArray, rigid, rotation_from_wpr, wpr_from_rotation
 from solver.units import DEG, DEG_PER_RAD, MM, MM_PER_M
 
@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> int:
     if options.as_json != "-":
         for one in results:
             values = one["pose"]
-            print(
+            say(
                 "X {:.4f}  Y {:.4f}  Z {:.4f} mm  W {:.4f}  P {:.4f}  R {:.4f} deg  ".format(
                     *values
                 )

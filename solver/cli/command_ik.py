@@ -9,7 +9,7 @@ import numpy as np
 from solver.cli.arguments import six_numbers
 from solver.cli.command_fk import pose_from_xyzwpr
 from solver.cli.csv_rows import read_rows
-from solver.cli.output import emit_json
+from solver.cli.output import emit_json, say
 from solver.transforms import FloatArray
 from solver.units import DEG_PER_RAD
 
@@ -73,9 +73,9 @@ def _degrees(joints: FloatArray) -> FloatArray:
 def _print(results: list[dict]) -> None:  # type: ignore[type-arg]
     for index, one in enumerate(results, start=1):
         if len(results) > 1:
-            print(f"pose {index}")
+            say(f"pose {index}")
         if not one["solutions"]:
-            print("  no solution inside the reach and the limits")
+            say("  no solution inside the reach and the limits")
         for solution in one["solutions"]:
             joints = "  ".join(f"{value:9.4f}" for value in solution["joints_deg"])
-            print(f"  branch {solution['branch']}  {joints} deg  {solution['config']}")
+            say(f"  branch {solution['branch']}  {joints} deg  {solution['config']}")

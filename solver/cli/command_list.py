@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from solver.cli.output import emit_json
+from solver.cli.output import emit_json, say
 
 HELP = "list the shipped robots, beams, tools or cells"
 KINDS = ("robots", "beams", "tools", "cells")
@@ -29,5 +29,5 @@ def run(options: argparse.Namespace) -> int:
     if options.as_json != "-":
         width = max(len(entry.name) for entry in entries)
         for entry in entries:
-            print(f"{entry.name:<{width}}  {entry.title}")
+            say(f"{entry.name:<{width}}  {entry.title}")
     return 0

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from solver.cli.arguments import positive_number
-from solver.cli.output import TerminalMonitor, emit_json, refused
+from solver.cli.output import TerminalMonitor, emit_json, refused, say
 from solver.errors import RefusedError
 from solver.model.settings import Scheme
 from solver.units import MM
@@ -70,9 +70,6 @@ def run(options: argparse.Namespace) -> int:
     finally:
         monitor.close()
     seconds = time.perf_counter() - started
-    if options.as_json != "-":
-        print(summary(result))
-        print(f"planned in {seconds:.2f} s")
     written = None
     refusal = None
     if not options.no_program:
@@ -80,12 +77,15 @@ def run(options: argparse.Namespace) -> int:
             written = write_program(result, target, accepted)
         except RefusedError as error:
             refusal = error
+    if options.as_json != "-":
+        say(summary(result))
+        say(f"planned in {seconds:.2f} s")
     if options.as_json:
         emit_json(result_document(result, written, refusal), options.as_json)
     if refusal is not None:
         return refused(options.command, refusal)
     if written is not None and options.as_json != "-":
-        print(
+        say(
             f"wrote {written.path}: {len(written.checks)} checks passed after reading it back "
             "(nominal model; verify in T1)"
         )

@@ -50,20 +50,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # A name in Chinese must not end a run on a terminal that cannot show it.
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
-    options = build_parser().parse_args(arguments)
     try:
+        return _run(build_parser().parse_args(arguments))
+    except (KeyboardInterrupt, Cancelled):
+        print("posopt: stopped; no file was left half written", file=sys.stderr)
+        return INTERRUPTED
+
+
+def _run(options: argparse.Namespace) -> int:
+    from solver.cli.output import check_json_target, refused, say
+
+    try:
+        if options.as_json not in {None, "-"} and options.command != "distance":
+            check_json_target(options.as_json)
         return int(options.run(options))
     except PosoptError as error:
         if options.as_json == "-":
-            print(json.dumps({"error": type(error).__name__, "message": str(error)}))
-        print(f"posopt {options.command}: {error}", file=sys.stderr)
-        return error.exit_code
-    except (KeyboardInterrupt, Cancelled):
-        print(f"posopt {options.command}: stopped; nothing was written", file=sys.stderr)
-        return INTERRUPTED
-    except BrokenPipeError:
-        sys.stderr.close()
-        return 0
+            say(json.dumps({"error": type(error).__name__, "message": str(error)}))
+        return refused(options.command, error)
 
 
 if __name__ == "__main__":

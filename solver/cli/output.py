@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
+import os
 import sys
 import time
 from collections.abc import Mapping
@@ -12,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from solver.errors import PosoptError
+from solver.errors import InputError, PosoptError
 from solver.io.atomic import write_atomically
 from solver.progress import COMPILING
 
@@ -73,13 +75,36 @@ def plain(value: Any) -> Any:
     return value
 
 
+def say(text: str) -> None:
+    """Print a line; a reader that has gone away changes nothing about what is done."""
+    try:
+        print(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        with contextlib.suppress(OSError, ValueError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError as error:
+        raise InputError(f"the output cannot be written ({error.strerror})") from error
+
+
+def check_json_target(target: str) -> None:
+    """Refuse, before anything is done, a file that no document should or could be written to."""
+    path = Path(target)
+    if path.suffix.lower() != ".json":
+        raise InputError(f"--json {target}: a file name ending in .json was expected")
+    if not path.absolute().parent.is_dir():
+        raise InputError(f"--json {target}: there is no folder {path.parent}")
+    if path.exists() and not path.is_file():
+        raise InputError(f"--json {target}: it exists and is no regular file")
+
+
 def emit_json(document: Mapping[str, Any], target: str) -> None:
     """Write a document to a file, or to the screen for '-'."""
-    text = json.dumps(plain(document), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    text = json.dumps(plain(document), indent=2, ensure_ascii=False, allow_nan=False)
     if target == "-":
-        sys.stdout.write(text)
+        say(text)
     else:
-        write_atomically(Path(target), text.encode())
+        write_atomically(Path(target), f"{text}\n".encode())
 
 
 def refused(command: str, error: PosoptError) -> int:

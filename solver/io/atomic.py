@@ -49,11 +49,21 @@ def staged(path: Path, data: bytes) -> Iterator[Path]:
 
 
 def _checked_target(path: Path) -> Path:
-    """Return `path` as absolute, so that a change of folder meanwhile cannot move the file."""
+    """Return `path` as absolute, so that a change of folder meanwhile cannot move the file.
+
+    What a link points to is replaced, not the link.
+    """
     try:
         target = Path(path).absolute()
+        if target.is_symlink():
+            target = target.resolve()
         if target.is_dir():
             raise InputError("is a folder, a file name was expected", Place(str(path)))
+        if target.exists() and not target.is_file():
+            raise InputError(
+                "is a device or a pipe, which is not replaced; a file name was expected",
+                Place(str(path)),
+            )
         if not target.parent.is_dir():
             raise InputError(
                 f"cannot be written, because the folder {target.parent} does not exist",

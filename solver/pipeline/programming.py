@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from solver.analysis.motion_check import check_motion
 from solver.analysis.program_check import Check, check_positions
 from solver.analysis.result import PlanningResult, Sequence
 from solver.costs.steps import gap_times
@@ -17,12 +19,15 @@ from solver.io.verified_program import write_verified
 from solver.model.problem import PlanningProblem
 from solver.model.program import JointProgram, Move, rounded_joints
 from solver.model.toolpath import Event
+from solver.pipeline.digest import problem_digest
 from solver.pipeline.flow_check import check_flow
+from solver.transforms import FloatArray
 from solver.units import MM, MM_PER_M
 
 CELL_REMARK = "CELL "
 BEAM_REMARK = "BEAM "
 ACCEPTED_REMARK = "ACCEPTED CLEARANCE "
+DIGEST_REMARK = "DIGEST "
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +103,7 @@ def _remarks(problem: PlanningProblem, accepted: float | None) -> tuple[str, ...
     lines = [f"{CELL_REMARK}{problem.name}"]
     if section is not None:
         lines.append(f"{BEAM_REMARK}{section.name}")
+    lines.append(f"{DIGEST_REMARK}{problem_digest(problem)}")
     if accepted is not None:
         lines.append(f"{ACCEPTED_REMARK}{accepted * MM_PER_M:.3f} MM")
     return (*lines, "checked on the nominal model", "verify in T1")
@@ -113,11 +119,11 @@ def write_program(
     """
     problem = result.problem
     required = problem.settings.safety_distance
-    if accepted_clearance is not None and accepted_clearance < required:
+    least = result.sequence.least_clearance
+    if accepted_clearance is not None and accepted_clearance < required and least < required:
         required = accepted_clearance
     else:
         accepted_clearance = None
-    least = result.sequence.least_clearance
     if least < required:
         raise RefusedError(
             f"no program was written: the best sequence keeps only {_down(least)} mm of the "
@@ -153,6 +159,8 @@ def check_program_settings(problem: PlanningProblem, path: Path) -> None:
         raise InputError(f"{path}: a FANUC program file ends in .LS")
     if not path.absolute().parent.is_dir():
         raise InputError(f"{path}: there is no folder {path.parent}")
+    if path.exists() and not path.is_file():
+        raise InputError(f"{path}: it exists and is no regular file")
     home = Move(joints=np.zeros(6), percent=problem.program.approach_percent)
     render_fanuc_joint(_program(problem, path.stem, (home,), None))
 
@@ -162,10 +170,9 @@ def required_clearance(problem: PlanningProblem, written: ProgramFile) -> float:
     for remark in written.remarks:
         if remark.startswith(ACCEPTED_REMARK):
             text = remark.removeprefix(ACCEPTED_REMARK).removesuffix("MM").strip()
-            try:
-                return min(float(text) * MM, problem.settings.safety_distance)
-            except ValueError as error:
-                raise InputError(f"remark {remark!r} names no clearance") from error
+            if not re.fullmatch(r"[0-9]{1,4}[.][0-9]{3}", text) or float(text) <= 0.0:
+                raise InputError(f"{written.file}: remark {remark!r} names no clearance above 0")
+            return min(float(text) * MM, problem.settings.safety_distance)
     return problem.settings.safety_distance
 
 
@@ -185,6 +192,35 @@ def check_program(
     name = Check(
         "program name", named, int(not named), 0, "differing", f"{written.name} in {written.file}"
     )
+    head = (name, flow, numbers, *_digest_check(problem, written))
     if not flow.passed:
-        return (name, flow, numbers)
-    return (name, flow, numbers, *check_positions(problem, written.path_joints(), least_clearance))
+        return head
+    joints = written.path_joints()
+    positions = check_positions(problem, joints, least_clearance)
+    if len(joints) != len(problem.toolpath):
+        return (*head, *positions)
+    return (*head, *positions, *check_motion(problem, joints, _durations(written)))
+
+
+def _digest_check(problem: PlanningProblem, written: ProgramFile) -> tuple[Check, ...]:
+    """Whether the program was written for this very cell, where it says for which one."""
+    expected = problem_digest(problem)
+    stated = [
+        remark.removeprefix(DIGEST_REMARK).strip()
+        for remark in written.remarks
+        if remark.startswith(DIGEST_REMARK)
+    ]
+    other = sum(one != expected for one in stated)
+    detail = f"written for {', '.join(stated)}, this cell is {expected}"
+    return (Check("cell digest", not other, other, 0, "differing", detail),) if stated else ()
+
+
+def _durations(written: ProgramFile) -> FloatArray:
+    """(n,) time of each move [s], nan where the program gives a share of the speed."""
+    factors = {"msec": 1e-3, "sec": 1.0}
+    times = []
+    for move in written.moves:
+        known = move.speed.unit in factors and move.speed.value is not None
+        seconds = float(move.speed.value or 0.0) * factors.get(move.speed.unit, np.nan)
+        times += [seconds if known else np.nan] * len(move.positions)
+    return np.array(times)

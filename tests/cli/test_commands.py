@@ -1,6 +1,11 @@
 """The command line as a person or a script uses it, in process."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import jsonschema
@@ -311,3 +316,55 @@ def test_check_of_a_cell_that_is_not_shipped_asks_for_its_file(here, capsys):
     code, _, err = run(capsys, "check", "G.LS")
     assert code == 2
     assert "--cell" in err
+
+
+@pytest.mark.parametrize("name", ["GROOVE.LS", "path.csv", "cell.toml", "no/such/folder.json", "x"])
+def test_a_document_never_replaces_what_is_no_document(here, capsys, name):
+    """`--json J.LS --out J.LS` once left JSON in the program, and `--json path.csv` the input."""
+    (here / "path.csv").write_text("kept", "utf-8")
+    code, _, err = run(capsys, "plan", "groove_paper", "--out", "GROOVE.LS", "--json", name)
+    assert code == 2
+    assert "--json" in err
+    assert [one.name for one in here.iterdir()] == ["path.csv"]
+    assert (here / "path.csv").read_text("utf-8") == "kept"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="named pipes are of POSIX systems")
+@pytest.mark.parametrize("option", ["--json", "--out"])
+def test_a_pipe_is_never_replaced_by_a_file(here, capsys, option):
+    """As root, a device given as the output was once replaced."""
+    name = "pipe.json" if option == "--json" else "PIPE.LS"
+    os.mkfifo(here / name)
+    code, _, _ = run(capsys, "plan", "groove_paper", option, name)
+    assert code == 2
+    assert (here / name).is_fifo()
+
+
+def test_a_reader_that_leaves_early_changes_nothing(here):
+    """`posopt plan | head -1` once ended with exit code 0 and no program."""
+    command = [sys.executable, "-m", "solver.cli.main", "plan", "groove_paper", "--out", "P.LS"]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
+    ) as process:
+        process.stdout.close()
+        errors = process.stderr.read().decode()
+    assert process.returncode == 0, errors
+    assert "Traceback" not in errors
+    assert (here / "P.LS").exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="SIGINT is sent differently there")
+@pytest.mark.parametrize("seconds", [0.1, 0.6, 1.2])
+def test_an_interrupt_is_one_line_and_leaves_nothing_behind(here, seconds):
+    command = [sys.executable, "-m", "solver.cli.main", "plan", "--out", "P.LS"]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
+    ) as process:
+        time.sleep(seconds)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=120)
+    # Before Python has reached our code the interpreter itself answers.
+    assert process.returncode in {0, 130, 1, -signal.SIGINT}
+    assert process.returncode == 0 or not list(here.iterdir())

@@ -66,7 +66,7 @@ def golden_program() -> JointProgram:
         ),
         name="GROOVE_3",
         comment="three moves",
-        remarks=("cell groove_hw300", "remark of exactly thirty-two cha"),
+        remarks=("CELL groove_hw300", "remark of exactly thirty-two cha"),
     )
 
 

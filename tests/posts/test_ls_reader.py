@@ -21,7 +21,7 @@ CARTESIAN = """P[2:"above hole"]{
 def test_the_hand_checked_file_is_read_to_the_values_that_stand_in_it():
     found = read_program_file(GOLDEN)
     assert (found.name, found.kind, found.comment) == ("GROOVE_3", "", "three moves")
-    assert found.remarks == ("cell groove_hw300", "remark of exactly thirty-two cha")
+    assert found.remarks == ("CELL groove_hw300", "remark of exactly thirty-two cha")
     assert (found.uframe, found.utool) == (0, 1)
     assert found.attributes["LINE_COUNT"] == "16"
     assert found.attributes["TASK_PRIORITY"] == "50"

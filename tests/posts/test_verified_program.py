@@ -96,7 +96,7 @@ def test_a_failed_recheck_leaves_nothing_but_an_older_file(tmp_path, failure, ol
         ("/PROG  GROOVE_3", "/PROG  GROOVE_4", "its name reads 'GROOVE_4' instead of 'GROOVE_3'"),
         ("/PROG  GROOVE_3", "/PROG  GROOVE_3  Macro", "its kind"),
         ("three moves", "free moves", "its comment"),
-        ("!cell groove_hw300", "!cell groove_hw200", "its remarks"),
+        ("!CELL groove_hw300", "!cell groove_hw200", "its remarks"),
         ("LINE_COUNT\t= 16", "LINE_COUNT\t= 15", "LINE_COUNT reads '15' instead of '16'"),
         ("CREATE\t\t= DATE 26", "CREATE\t\t= DATE 27", "its creation"),
         ("1,*,*,*,*", "*,1,*,*,*", "its motion group"),
