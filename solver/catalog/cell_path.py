@@ -14,8 +14,10 @@ Beside it stands what the path does not say itself: `orientation_wpr_deg` stated
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -42,12 +44,14 @@ from solver.units import DEG, MM
 FRAMES: Final = tuple(frame.value for frame in Frame)
 KINDS: Final = ("file", "line", "parametric")
 
-FILE_KEYS: Final = {
-    "frame": "it lies in the frame of the beam",
-    "unit": "its lengths are in mm",
-    "touches": "it touches the group of its face",
-    "resample_mm": "its own keys state how far apart its points are",
-}
+FILE_KEYS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "frame": "its points lie in the frame of the beam",
+        "unit": "its lengths are in mm",
+        "touches": "it touches the group of its face",
+        "resample_mm": "it has points of its own",
+    }
+)
 """Keys that only a file may have beside it, and why the other kinds need none."""
 
 
@@ -114,11 +118,14 @@ def _check_face_path(table: Table, kind: str, workpiece: Workpiece) -> None:
     if workpiece.section is None:
         raise table.error(
             kind,
-            f"the workpiece {workpiece.name} is a mesh without the faces of a beam; state a file",
+            f"workpiece {workpiece.name} is a mesh, which has no faces of a beam; state a file",
         )
     for key, reason in FILE_KEYS.items():
         if table.has(key):
-            raise table.error(key, f"it belongs to a file, not to {kind!r}: {reason}; leave it out")
+            raise table.error(
+                key,
+                f"the key belongs to a file, not to a path by {kind!r}: {reason}; leave it out",
+            )
 
 
 def _load(

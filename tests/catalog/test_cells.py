@@ -345,7 +345,16 @@ BAD_CELLS = {
     "into the flange": (("path", "line", "to_share"), 1.01, "1.01"),
     "one point": (("path", "line", "points"), 1, "whole number 2 to"),
     "no feed": (("path", "feed_mm_s"), 0, "more than 0"),
-    "touches nothing": (("path", "touches"), "webb", "did you mean 'web'"),
+    "frame of a line": (("path", "frame"), "beam", "path.frame: the key belongs to a file"),
+    "unit of a line": (("path", "unit"), "mm", "path.unit: the key belongs to a file"),
+    "touch of a line": (("path", "touches"), "web", "path.touches: the key belongs to a file"),
+    "resampled line": (("path", "resample_mm"), 5, "path.resample_mm: the key belongs to a file"),
+    "frame of nothing": (
+        ("path", "orientation_wpr_deg"),
+        None,
+        "path.orientation_frame: expected orientation_wpr_deg",
+    ),
+    "no workpiece": (("beam",), None, "a table [beam] or a table [workpiece]"),
     "sweep backward": (("settings", "lean_deg"), [25, -25, 1], "must run upward"),
     "sweep still": (("settings", "lean_deg"), [-25, 25, 0], "must be positive"),
     "sweep huge": (("settings", "lean_deg"), [-25, 25, 1e-9], "100,000 angles"),
@@ -377,6 +386,24 @@ def test_a_cell_that_contradicts_itself_is_refused_with_its_key(path, value, sai
     error = refusal(load_cell, file)
     assert said in str(error)
     assert error.place.key
+
+
+def test_a_file_that_touches_an_unknown_group_is_told_the_nearest(own_cell):
+    with pytest.raises(InputError, match=r"path\.touches: .*did you mean 'web'"):
+        own_cell({("path", "touches"): "webb"}, "groove_hw300")
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("frame", "beam"), ("unit", "mm"), ("touches", "web"), ("resample_mm", 5.0)],
+)
+def test_keys_of_files_are_refused_beside_parametric_passes(own_cell, key, value):
+    passes = {
+        "face": "web_left", "from_along_mm": -100, "to_along_mm": 100, "offset_mm": 30, "points": 5,
+    }  # fmt: skip
+    own_cell({("path",): {"parametric": passes}})
+    with pytest.raises(InputError, match=rf"path\.{key}: the key belongs to a file"):
+        own_cell({("path",): {"parametric": passes, key: value}})
 
 
 def test_step_limits_and_weights_arrive_in_si(own_cell):

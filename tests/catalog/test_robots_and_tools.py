@@ -249,7 +249,11 @@ def test_the_die_grinder_is_closed_from_flange_to_ball_and_has_three_roles():
         (("tool", "mass_kg"), -1, "expected at least 0 in kg"),
         (("bodies", 0, "role"), "near-by", "did you mean 'near'"),
         (("bodies", 1, "name"), "adapter", "two bodies are called 'adapter'"),
-        (("bodies", 3, "margin_mm"), -2.0, "expected at least 0"),
+        (("bodies", 3, "margin_mm"), -2.0, "key bodies[3].margin_mm: expected 0 to 1000 in mm"),
+        (("bodies", 3, "margin_mm"), 1000.1, "key bodies[3].margin_mm: expected 0 to 1000 in mm"),
+        (("bodies", 4, "margin_mm"), 2000, "key bodies[4].margin_mm: expected 0 to 1000 in mm"),
+        (("bodies", 4, "depth_mm"), -0.1, "key bodies[4].depth_mm: expected 0 to 20 in mm"),
+        (("bodies", 4, "depth_mm"), 20.1, "key bodies[4].depth_mm: expected 0 to 20 in mm"),
         (("bodies", 0, "margin_mm"), 2.0, "unknown key"),
     ],
 )
@@ -257,6 +261,14 @@ def test_a_tool_that_contradicts_itself_is_refused(path, value, said, tmp_path):
     file = tmp_path / "bad.toml"
     file.write_text(document(changed(shipped("tools", "die_grinder"), path, value)))
     assert said in str(refusal(load_tool, file))
+
+
+def test_the_largest_margin_and_depth_are_accepted(tmp_path):
+    tree = changed(shipped("tools", "die_grinder"), ("bodies", 4, "margin_mm"), 1000)
+    file = tmp_path / "wide.toml"
+    file.write_text(document(changed(tree, ("bodies", 4, "depth_mm"), 20)))
+    ball = load_tool(file).bodies[4]
+    assert (ball.margin, ball.depth) == pytest.approx((1.0, 0.020))
 
 
 @pytest.mark.parametrize("kind", ["robots", "tools", "beams", "cells"])
