@@ -40,6 +40,17 @@ class EmptyLayer:
         )
 
 
+_ADVICE = {
+    Outcome.FEASIBLE: "try another place of the beam",
+    Outcome.UNREACHABLE: "try the beam nearer to the robot, or a wider lean range",
+    Outcome.JOINT_LIMIT: "try a wider lean range, all branches, or wider joint windows",
+    Outcome.SINGULAR: "try a wider lean range, or a lower bound of manipulability",
+    Outcome.COLLISION: "try a wider lean range, all branches, or another place of the beam",
+    Outcome.MARGIN: "look at the height of the path over the surface and at what its pass touches",
+    Outcome.SELF_COLLISION: "try a wider lean range or another place of the beam",
+}
+
+
 class InfeasiblePathError(PlanningError):
     """No sequence: `empty` lists layers without candidates, `cut` where steps are too large."""
 
@@ -47,10 +58,9 @@ class InfeasiblePathError(PlanningError):
         self.empty, self.cut = empty, cut
         if empty:
             more = f"; {waypoints} waypoints in all have none" if waypoints > 1 else ""
-            advice = "try a wider lean range, all branches, or another place of the beam"
-            message = f"no sequence: {empty[0]}{more}; {advice}"
+            message = f"no sequence: {empty[0]}{more}; {_ADVICE[empty[0].missed.filter]}"
         elif cut is not None:
-            advice = "try a finer path, a lower feed or wider step limits"
+            advice = "try wider step limits, a lower feed or a finer lean step"
             message = f"no sequence: {_cut_words(cut)}; {advice}"
         else:
             message = "no sequence under the asked clearance; try a smaller safety distance"
@@ -63,7 +73,7 @@ def _cut_words(cut: Cut) -> str:
     return (
         f"from waypoint {first.gap + 1} to {first.gap + 2} {what} would have to step by "
         f"{first.step * DEG_PER_RAD:.3g} deg or more, where {first.limit * DEG_PER_RAD:.3g} deg "
-        f"are allowed ({len(cut.gaps)} such gaps)"
+        f"are allowed (steps that are too large: {len(cut.gaps)})"
     )
 
 

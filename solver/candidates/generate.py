@@ -30,8 +30,8 @@ from solver.transforms import (
 POSES_PER_CALL = 256
 """Tool poses a kernel call evaluates, so that it returns within some 20 ms."""
 
-MEMORY_LIMIT = 400_000_000
-"""Largest number of branch candidates that are held at once times 100 [byte]."""
+CANDIDATE_LIMIT = 4_000_000
+"""Most branch candidates of one problem; each takes about 75 bytes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -137,10 +137,10 @@ def generate(problem: PlanningProblem, monitor: Monitor | None = None) -> Candid
     angles = orientations(settings)
     branches = np.array(settings.branches, np.int64)
     shape = (len(problem.toolpath), len(angles), len(branches))
-    if np.prod(shape, dtype=np.float64) > MEMORY_LIMIT / 100:
+    if np.prod(shape, dtype=np.float64) > CANDIDATE_LIMIT:
         raise ModelError(
             f"{shape[0]} waypoints x {shape[1]} orientations x {shape[2]} branches are more than "
-            f"{MEMORY_LIMIT // 100:,} candidates; use a larger step or fewer branches"
+            f"{CANDIDATE_LIMIT:,} candidates; use a larger step or fewer branches"
         )
     touch = touch_numbers(problem, scene)
     joints = np.empty((*shape, 6))

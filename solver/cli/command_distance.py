@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from solver.cli.command_fk import pose_from_xyzwpr
 from solver.cli.output import emit_json
+from solver.cli.poses import pose_from_xyzwpr
 from solver.errors import InputError, Place
 from solver.model.shapes import Box, Capsule, ConvexShape, Cylinder, Hull, Sphere
 from solver.units import MM, MM_PER_M

@@ -4,24 +4,16 @@ from __future__ import annotations
 
 import argparse
 
-import numpy as np
-
-from solver.cli.arguments import six_numbers
-from solver.cli.csv_rows import read_rows
 from solver.cli.output import emit_json, say
-from solver.transforms import FloatArray, rigid, rotation_from_wpr, wpr_from_rotation
-from solver.units import DEG, DEG_PER_RAD, MM, MM_PER_M
+from solver.cli.poses import add_row_arguments, rows_of, tool_of, xyzwpr
+from solver.units import DEG
 
 HELP = "forward kinematics: poses in fanuc_world of pendant joints"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of this command."""
-    parser.add_argument("robot", metavar="ROBOT", help="name or TOML file of a robot")
-    source = parser.add_mutually_exclusive_group(required=True)
-    source.add_argument("--joints", metavar="J1,..,J6", help="six joints in degrees")
-    source.add_argument("--csv", metavar="F", help="a CSV file with six joints a row")
-    parser.add_argument("--tool", metavar="X,Y,Z,W,P,R", help="flange to TCP; without, the flange")
+    add_row_arguments(parser, "--joints", "J1,..,J6", "six joints in degrees")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -31,16 +23,7 @@ def run(options: argparse.Namespace) -> int:
     from solver.kinematics.configuration import config_string
 
     robot = load_robot(options.robot)
-    rows = (
-        read_rows(options.csv)
-        if options.csv
-        else np.array([six_numbers(options.joints, "--joints")])
-    )
-    tool = (
-        None
-        if options.tool is None
-        else pose_from_xyzwpr(np.array(six_numbers(options.tool, "--tool")))
-    )
+    rows, tool = rows_of(options, "--joints"), tool_of(options)
     joints = rows * DEG
     poses = forward(robot, joints, tool)
     results = [
@@ -62,15 +45,3 @@ def run(options: argparse.Namespace) -> int:
                 + str(one["config"])
             )
     return 0
-
-
-def pose_from_xyzwpr(values: FloatArray) -> FloatArray:
-    """(4, 4) transform of X Y Z [mm] and W P R [deg]."""
-    w, p, r = values[3:] * DEG
-    return rigid(rotation_from_wpr(w, p, r), values[:3] * MM)
-
-
-def xyzwpr(pose: FloatArray) -> FloatArray:
-    """(6,) X Y Z [mm] and W P R [deg] of a transform; -0 becomes 0."""
-    angles = np.array(wpr_from_rotation(pose[:3, :3])) * DEG_PER_RAD
-    return np.round(np.concatenate([pose[:3, 3] * MM_PER_M, angles]), 9) + 0.0

@@ -6,10 +6,8 @@ import argparse
 
 import numpy as np
 
-from solver.cli.arguments import six_numbers
-from solver.cli.command_fk import pose_from_xyzwpr
-from solver.cli.csv_rows import read_rows
 from solver.cli.output import emit_json, say
+from solver.cli.poses import add_row_arguments, pose_from_xyzwpr, rows_of, tool_of
 from solver.transforms import FloatArray
 from solver.units import DEG_PER_RAD
 
@@ -19,11 +17,7 @@ NO_SOLUTION = 3
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of this command."""
-    parser.add_argument("robot", metavar="ROBOT", help="name or TOML file of a robot")
-    source = parser.add_mutually_exclusive_group(required=True)
-    source.add_argument("--pose", metavar="X,Y,Z,W,P,R", help="a pose in fanuc_world, mm and deg")
-    source.add_argument("--csv", metavar="F", help="a CSV file with X,Y,Z,W,P,R a row")
-    parser.add_argument("--tool", metavar="X,Y,Z,W,P,R", help="flange to TCP; without, the flange")
+    add_row_arguments(parser, "--pose", "X,Y,Z,W,P,R", "a pose in fanuc_world, mm and deg")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -32,14 +26,7 @@ def run(options: argparse.Namespace) -> int:
     from solver.kinematics.arm import inverse
 
     robot = load_robot(options.robot)
-    rows = (
-        read_rows(options.csv) if options.csv else np.array([six_numbers(options.pose, "--pose")])
-    )
-    tool = (
-        None
-        if options.tool is None
-        else pose_from_xyzwpr(np.array(six_numbers(options.tool, "--tool")))
-    )
+    rows, tool = rows_of(options, "--pose"), tool_of(options)
     results = []
     for row in rows:
         found = inverse(robot, pose_from_xyzwpr(row), tool)

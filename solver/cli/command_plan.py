@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
     if options.scheme:
         scheme = Scheme(options.scheme)
         problem = replace(problem, settings=replace(problem.settings, scheme=scheme))
-    target = Path(options.out or f"{problem.program.name}.LS")
+    target = Path(f"{problem.program.name}.LS" if options.out is None else options.out)
     if not options.no_program:
         check_program_settings(problem, target)
     monitor = TerminalMonitor()
