@@ -14,7 +14,7 @@ import numpy as np
 
 from solver.analysis.metrics import JointMotion, joint_motion, mean_motion
 from solver.analysis.result import PlanningResult, joint_cost
-from solver.search.exact import exact
+from solver.search.exact import cheapest
 from solver.transforms import FloatArray, IntArray
 
 RANDOM_DRAWS = 100
@@ -61,8 +61,8 @@ def _restricted(result: PlanningResult, allowed: np.ndarray) -> tuple[IntArray, 
     graph, parent = result.graph.subgraph(allowed)
     if np.any(np.diff(graph.offsets) == 0):
         return None
-    found = exact(graph)
-    return (parent[found.path], found.cost) if found.found else None
+    path, cost = cheapest(graph)
+    return (parent[path], cost) if len(path) else None
 
 
 def _other_angles_nominal(result: PlanningResult) -> np.ndarray:

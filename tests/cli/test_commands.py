@@ -368,3 +368,25 @@ def test_an_interrupt_is_one_line_and_leaves_nothing_behind(here, seconds):
     # Before Python has reached our code the interpreter itself answers.
     assert process.returncode in {0, 130, 1, -signal.SIGINT}
     assert process.returncode == 0 or not list(here.iterdir())
+
+
+PATH_FAULTS = {
+    "a word": "x,y,z,w,p,r\n0,13,0,0,60,-90\nmany,13,0,0,60,-90\n",
+    "underscores": "x,y,z,w,p,r\n0,13,0,0,60,-90\n1_000,13,0,0,60,-90\n",
+    "full-width digits": "x,y,z,w,p,r\n0,13,0,0,60,-90\n５,13,0,0,60,-90\n",
+    "nan": "x,y,z,w,p,r\n0,13,0,0,60,-90\nnan,13,0,0,60,-90\n",
+    "ragged": "x,y,z,w,p,r\n0,13,0,0,60,-90\n5,13,0\n",
+    "repeated point": "x,y,z,w,p,r\n0,13,0,0,60,-90\n0,13,0,0,60,-90\n",
+    "one point": "x,y,z,w,p,r\n0,13,0,0,60,-90\n",
+    "binary": "\0\1\2\3",
+}
+
+
+@pytest.mark.parametrize("name", PATH_FAULTS)
+def test_a_malformed_path_is_one_sentence_and_nothing_is_written(here, capsys, name):
+    (here / "path.csv").write_text("# frame: beam\n" + PATH_FAULTS[name], "utf-8")
+    code, _, err = run(capsys, "plan", "--path", "path.csv", "--out", "P.LS")
+    assert code == 2
+    assert "path.csv" in err
+    assert len(err.strip().splitlines()) == 1
+    assert [one.name for one in here.iterdir()] == ["path.csv"]

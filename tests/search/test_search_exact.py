@@ -18,7 +18,7 @@ from search_oracles import (
 
 from solver.errors import Cancelled
 from solver.search import sweeps
-from solver.search.exact import exact
+from solver.search.exact import cheapest, exact
 from solver.search.graph import LayeredGraph
 
 CLOSE = {"rtol": 1e-12, "atol": 1e-12}
@@ -211,3 +211,11 @@ def test_progress_rises_to_its_total():
     assert done[0] == 0
     assert done[-1] == monitor.reports[-1][2]
     assert {report[0] for report in monitor.reports} == {"search"}
+
+
+@settings(max_examples=100, deadline=None)
+@given(graph=small_graphs())
+def test_the_cheapest_sequence_alone_is_that_of_both_directions(graph):
+    both, (path, cost) = exact(graph), cheapest(graph)
+    assert path.tolist() == both.path.tolist()
+    assert cost == pytest.approx(both.cost, rel=1e-12) or cost == both.cost == INF
