@@ -13,6 +13,7 @@ from solver.candidates.generate import touch_numbers
 from solver.candidates.postures import check_exact_postures
 from solver.collision.kernels_scene import FREE
 from solver.collision.scene import CollisionScene, build_scene
+from solver.costs.steps import gap_times
 from solver.model.problem import PlanningProblem
 from solver.transforms import FloatArray
 from solver.units import MM, MM_PER_M
@@ -25,6 +26,9 @@ SAMPLE_LIMIT = 20_000
 
 SPEED_TOLERANCE = 1e-6
 
+TIME_TOLERANCE = 1.001e-3
+"""How far the time of a move may be from distance / feed: times are whole milliseconds [s]."""
+
 
 def check_motion(
     problem: PlanningProblem, pendant: FloatArray, durations: FloatArray
@@ -34,7 +38,30 @@ def check_motion(
     `durations` (n,) [s] is the time of the move to each position, nan where the program gives
     a share of the joint speed instead.
     """
-    return (_speed_check(problem, pendant, durations), _sweep_check(problem, pendant))
+    return (
+        _feed_check(problem, durations),
+        _speed_check(problem, pendant, durations),
+        _sweep_check(problem, pendant),
+    )
+
+
+def _feed_check(problem: PlanningProblem, durations: FloatArray) -> Check:
+    """Every move within a pass takes the time of its distance at the feed, to a millisecond."""
+    expected = gap_times(problem)
+    off = np.where(np.isnan(expected), 0.0, np.abs(durations[1:] - expected))
+    if not off.size:
+        return Check("feed", True, 0.0, TIME_TOLERANCE * 1e3, "ms")
+    at = int(np.argmax(np.where(np.isnan(off), np.inf, off)))
+    timed = not np.isnan(off[at])
+    return Check(
+        "feed",
+        timed and bool(off[at] <= TIME_TOLERANCE),
+        float(off[at]) * 1e3,
+        TIME_TOLERANCE * 1e3,
+        "ms beside distance / feed",
+        f"at waypoint {at + 2}" if timed else f"no time is given for the move to waypoint {at + 2}",
+        at + 1,
+    )
 
 
 def _speed_check(problem: PlanningProblem, pendant: FloatArray, durations: FloatArray) -> Check:

@@ -231,7 +231,15 @@ def test_a_full_turn_of_a_joint_between_positions_is_noticed(written):
 
 def test_moves_that_are_too_fast_for_a_joint_are_noticed(written):
     result, text = written
-    assert failed(result.problem, re.sub(r"\d+msec", "1msec", text)) == {"joint speed"}
+    assert failed(result.problem, re.sub(r"\d+msec", "1msec", text)) == {"feed", "joint speed"}
+
+
+@pytest.mark.parametrize("speed", ["10%", "100%", "500msec", "800msec", "2sec"])
+def test_another_speed_while_grinding_is_noticed(written, speed):
+    result, text = written
+    line = next(line for line in text.split("\r\n") if "J P[20] " in line)
+    changed = re.sub(r"J P\[20\] \S+", f"J P[20] {speed}", line)
+    assert failed(result.problem, text.replace(line, changed)) == {"feed"}
 
 
 def test_a_link_through_the_flange_is_noticed(written, tmp_path):
