@@ -71,13 +71,14 @@ def _speed_check(problem: PlanningProblem, pendant: FloatArray, durations: Float
         return Check("joint speed", True, 0.0, 100.0, "% of the joint's speed")
     at, joint = np.unravel_index(int(np.argmax(share)), share.shape)
     worst = float(share[at, joint])
+    advice = "" if worst <= 1.0 + SPEED_TOLERANCE else "; a lower feed or closer poses help"
     return Check(
         "joint speed",
         worst <= 1.0 + SPEED_TOLERANCE,
         100.0 * worst,
         100.0,
         "% of the joint's speed",
-        f"J{joint + 1} on the way to waypoint {at + 2}; a lower feed or closer poses help",
+        f"J{joint + 1} on the way to waypoint {at + 2}{advice}",
         int(at) + 1,
     )
 

@@ -50,7 +50,8 @@ class Check:
     def __str__(self) -> str:
         """The check as a line for people."""
         word = "ok    " if self.passed else "FAILED"
-        text = f"{word} {self.name}: {self.value:.4g} {self.unit} (limit {self.limit:.4g})"
+        limit = f"{self.limit:.4g}, assumed" if self.assumed else f"{self.limit:.4g}"
+        text = f"{word} {self.name}: {self.value:.4g} {self.unit} (limit {limit})"
         return f"{text}, {self.detail}" if self.detail else text
 
 
