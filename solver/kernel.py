@@ -2,8 +2,8 @@
 
 numba checks only the file of a kernel itself before it takes machine code from its cache; code
 of other kernels is compiled into it and would stay as it was when their file changes. So the
-cache folder is named by a hash over every `kernels*.py` of this package: after an update
-nothing of an earlier version can run.
+cache folder is named by a hash over every file of this package that compiled code is made of:
+after an update nothing of an earlier version can run.
 """
 
 from __future__ import annotations
@@ -19,15 +19,16 @@ from typing import Any
 import numba
 from numba import njit
 
-SOURCES = "kernels*.py"
+SOURCES = ("kernels*.py", "units.py", "kernel.py")
+"""Files whose code or constants end up in compiled kernels."""
 
 
 @cache
 def sources_hash() -> str:
-    """Hash over the names and contents of all kernel files, and numba's version."""
+    """Hash over the names and contents of `SOURCES`, and numba's version."""
     digest = hashlib.sha256(numba.__version__.encode())
     root = Path(__file__).parent
-    for path in sorted(root.rglob(SOURCES)):
+    for path in sorted(one for pattern in SOURCES for one in root.rglob(pattern)):
         digest.update(path.relative_to(root).as_posix().encode())
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]

@@ -12,6 +12,10 @@ from solver.errors import InputError
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
+LARGEST = 1e6
+"""Largest millimetres or degrees that are taken."""
+
+
 class ExactParser(argparse.ArgumentParser):
     """A parser that takes options only by their full names and answers in one line."""
 
@@ -33,6 +37,8 @@ def number(text: str, what: str) -> float:
     value = float(text)
     if not math.isfinite(value):
         raise InputError(f"{what}: {text.strip()} is too large")
+    if abs(value) > LARGEST:
+        raise InputError(f"{what}: {text.strip()} is beyond {LARGEST:g}, the largest that is taken")
     return value
 
 

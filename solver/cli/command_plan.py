@@ -6,12 +6,16 @@ import argparse
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from solver.cli.arguments import positive_number
 from solver.cli.output import TerminalMonitor, emit_json, refused, say
 from solver.errors import RefusedError
 from solver.model.settings import Scheme
 from solver.units import MM
+
+if TYPE_CHECKING:
+    from solver.pipeline.programming import WrittenProgram
 
 HELP = "plan a cell, write its program and print the summary"
 DEFAULT_CELL = "groove_hw300"
@@ -85,8 +89,18 @@ def run(options: argparse.Namespace) -> int:
     if refusal is not None:
         return refused(options.command, refusal)
     if written is not None and options.as_json != "-":
-        say(
-            f"wrote {written.path}: {len(written.checks)} checks passed after reading it back "
-            "(nominal model; verify in T1)"
-        )
+        _report(written, needless=accepted is not None and result.clearance_met)
     return 0
+
+
+def _report(written: WrittenProgram, *, needless: bool) -> None:
+    """Say what was written, and how near it comes at its positions and between them."""
+    for check in written.checks:
+        if check.name.startswith(("clearance", "between")):
+            say(str(check))
+    if needless:
+        say("the safety distance is met; --accept-clearance was not needed")
+    say(
+        f"wrote {written.path}: {len(written.checks)} checks passed after reading it back "
+        "(nominal model; verify in T1)"
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from solver.costs.steps import gap_times
 from solver.errors import InputError, RefusedError
 from solver.io.ls_program import ProgramFile
 from solver.io.posts.fanuc_joint import render_fanuc_joint
-from solver.io.verified_program import write_verified
+from solver.io.verified_program import differences, write_verified
 from solver.model.problem import PlanningProblem
 from solver.model.program import JointProgram, Move, rounded_joints
 from solver.model.toolpath import Event
@@ -49,10 +50,17 @@ def build_program(
     Moves within a pass last as long as their distance takes at the feed; the first move of
     each pass goes at the cell's approach speed and ends FINE.
     """
-    problem, sequence = result.problem, sequence or result.sequence
+    joints = rounded_joints((sequence or result.sequence).pendant)
+    title = name or result.problem.program.name
+    return program_of(result.problem, joints, title, accepted_clearance)
+
+
+def program_of(
+    problem: PlanningProblem, joints: FloatArray, name: str, accepted: float | None = None
+) -> JointProgram:
+    """The program that a problem asks for, through pendant joints (n, 6) [rad], rounded already."""
     times = gap_times(problem)
     events = _events(problem)
-    joints = rounded_joints(sequence.pendant)
     last = len(joints) - 1
     moves = []
     for index, row in enumerate(joints):
@@ -70,7 +78,7 @@ def build_program(
                 events=events.get(index, ()),
             )
         )
-    return _program(problem, name or problem.program.name, tuple(moves), accepted_clearance)
+    return _program(problem, name, tuple(moves), accepted)
 
 
 def _program(
@@ -121,6 +129,10 @@ def write_program(
     required = problem.settings.safety_distance
     least = result.sequence.least_clearance
     if accepted_clearance is not None and accepted_clearance < required and least < required:
+        # As it will be stamped, so that what is checked now is what is checked later.
+        accepted_clearance = round(accepted_clearance * MM_PER_M, 3) * MM
+        if accepted_clearance <= 0.0:
+            raise InputError("an accepted clearance must be at least 0.001 mm")
         required = accepted_clearance
     else:
         accepted_clearance = None
@@ -134,7 +146,7 @@ def write_program(
     checks: list[Check] = []
 
     def verify(written: ProgramFile) -> None:
-        checks.extend(check_program(problem, written, required))
+        checks.extend(check_program(problem, written, required_clearance(problem, written)))
         failed = [check for check in checks if not check.passed]
         if failed:
             lines = "; ".join(str(check) for check in failed)
@@ -167,13 +179,19 @@ def check_program_settings(problem: PlanningProblem, path: Path) -> None:
 
 def required_clearance(problem: PlanningProblem, written: ProgramFile) -> float:
     """What the program has to keep [m]: the safety distance, or less where it says so."""
+    accepted = accepted_clearance(problem, written)
+    return problem.settings.safety_distance if accepted is None else accepted
+
+
+def accepted_clearance(problem: PlanningProblem, written: ProgramFile) -> float | None:
+    """The clearance below the safety distance that a program's remark accepts [m], or None."""
     for remark in written.remarks:
         if remark.startswith(ACCEPTED_REMARK):
             text = remark.removeprefix(ACCEPTED_REMARK).removesuffix("MM").strip()
             if not re.fullmatch(r"[0-9]{1,4}[.][0-9]{3}", text) or float(text) <= 0.0:
                 raise InputError(f"{written.file}: remark {remark!r} names no clearance above 0")
             return min(float(text) * MM, problem.settings.safety_distance)
-    return problem.settings.safety_distance
+    return None
 
 
 def check_program(
@@ -199,7 +217,23 @@ def check_program(
     positions = check_positions(problem, joints, least_clearance)
     if len(joints) != len(problem.toolpath):
         return (*head, *positions)
-    return (*head, *positions, *check_motion(problem, joints, _durations(written)))
+    text = _text_check(problem, written, joints)
+    return (*head, text, *positions, *check_motion(problem, joints, _durations(written)))
+
+
+def _text_check(problem: PlanningProblem, written: ProgramFile, joints: FloatArray) -> Check:
+    """Whether all but the joints is what posopt writes for this problem.
+
+    Speeds, terminations, events, groups, axes, marks and remarks: whatever else stands in the
+    file could move the robot otherwise than checked.
+    """
+    accepted = accepted_clearance(problem, written)
+    expected = program_of(problem, rounded_joints(joints), written.name, accepted)
+    found = list(islice(differences(expected, written), 100))
+    detail = found[0] if found else "speeds, events, groups and remarks as the cell asks"
+    if accepted is not None:
+        detail += f"; ACCEPTED CLEARANCE {accepted * MM_PER_M:.3f} MM"
+    return Check("program text", not found, len(found), 0, "differences", detail)
 
 
 def _digest_check(problem: PlanningProblem, written: ProgramFile) -> tuple[Check, ...]:
