@@ -22,6 +22,10 @@ from solver.progress import SilentMonitor
 from solver.search.exact import cheapest
 
 
+LEAST_TIME = 0.2
+"""How long the runs of one measurement last in all, at least [s]."""
+
+
 @dataclass(frozen=True, slots=True)
 class PlanTiming:
     """Medians of one cell [s] and what they were spent on."""
@@ -53,10 +57,13 @@ class PeerTiming:
 
 
 def median_time(action: Callable[[], object], repeats: int) -> float:
-    """Median wall time of `repeats` runs after one that is not counted [s]."""
+    """Median wall time of runs after one that is not counted [s].
+
+    At least `repeats` runs, and more of a short action until they have taken `LEAST_TIME`.
+    """
     action()
-    times = []
-    for _ in range(repeats):
+    times: list[float] = []
+    while len(times) < repeats or (sum(times) < LEAST_TIME and len(times) < 100 * repeats):
         started = time.perf_counter()
         action()
         times.append(time.perf_counter() - started)
