@@ -21,7 +21,6 @@ from solver.pipeline.planning import exact_sequence, layered_graph, paper_sequen
 from solver.progress import SilentMonitor
 from solver.search.exact import cheapest
 
-
 LEAST_TIME = 0.2
 """How long the runs of one measurement last in all, at least [s]."""
 
