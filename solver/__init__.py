@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from solver.io.importers import load_toolpath as load_toolpath
     from solver.io.importers import parametric_toolpath as parametric_toolpath
     from solver.io.importers import resample as resample
+    from solver.io.ls_program_set import read_program_set as read_program_set
     from solver.io.ls_reader import read_program as read_program
     from solver.kinematics.arm import forward as forward
     from solver.kinematics.arm import inverse as inverse
@@ -39,7 +40,9 @@ if TYPE_CHECKING:
     from solver.model.settings import Scheme as Scheme
     from solver.pipeline.planning import layered_graph as layered_graph
     from solver.pipeline.planning import plan as plan
-    from solver.pipeline.programming import check_program as check_program
+    from solver.pipeline.program_check import check_program as check_program
+    from solver.pipeline.program_check import inspect_program as inspect_program
+    from solver.pipeline.programming import ProgramOrder as ProgramOrder
     from solver.pipeline.programming import write_program as write_program
     from solver.search.exact import exact as exact
 
@@ -47,14 +50,16 @@ _HOME: Final = {
     "PlanningProblem": "solver.model.problem",
     "PlanningResult": "solver.analysis.result",
     "PosoptError": "solver.errors",
+    "ProgramOrder": "solver.pipeline.programming",
     "Scheme": "solver.model.settings",
-    "check_program": "solver.pipeline.programming",
+    "check_program": "solver.pipeline.program_check",
     "config_string": "solver.kinematics.configuration",
     "distance": "solver.collision.distance",
     "exact": "solver.search.exact",
     "explain": "solver.candidates.explain",
     "forward": "solver.kinematics.arm",
     "generate": "solver.candidates.generate",
+    "inspect_program": "solver.pipeline.program_check",
     "inverse": "solver.kinematics.arm",
     "jacobian": "solver.kinematics.jacobian",
     "layered_graph": "solver.pipeline.planning",
@@ -68,6 +73,7 @@ _HOME: Final = {
     "parametric_toolpath": "solver.io.importers",
     "plan": "solver.pipeline.planning",
     "read_program": "solver.io.ls_reader",
+    "read_program_set": "solver.io.ls_program_set",
     "references": "solver.analysis.references",
     "resample": "solver.io.importers",
     "result_document": "solver.analysis.report",

@@ -126,3 +126,36 @@ def rotation_angle(rotation: NDArray[Any]) -> float:
         ]
     )
     return math.atan2(float(np.linalg.norm(skew)), float(np.trace(rotation)) - 1.0)
+
+
+def rotation_vector(rotation: FloatArray) -> FloatArray:
+    """(3,) axis times angle [rad] of a (3, 3) rotation; at half a turn either sign of the axis."""
+    angle = rotation_angle(rotation)
+    skew = np.array(
+        [
+            rotation[2, 1] - rotation[1, 2],
+            rotation[0, 2] - rotation[2, 0],
+            rotation[1, 0] - rotation[0, 1],
+        ]
+    )
+    if angle < np.pi - 1e-4:
+        # sin(angle) / angle, also for a vanishing angle.
+        vector: FloatArray = skew / (2.0 * np.sinc(angle / np.pi))
+        return vector
+    outer = (rotation + rotation.T) / 2.0 - np.cos(angle) * np.eye(3)
+    column = outer[:, int(np.argmax(np.diag(outer)))]
+    axis = column / np.linalg.norm(column)
+    along: FloatArray = angle * (axis if float(axis @ skew) >= 0.0 else -axis)
+    return along
+
+
+def rotations_about(vector: FloatArray, share: FloatArray) -> FloatArray:
+    """(m, 3, 3) rotations by `share` (m,) of the rotation vector (3,) [rad] (Rodrigues)."""
+    angle = float(np.linalg.norm(vector))
+    if angle == 0.0:
+        return np.broadcast_to(np.eye(3), (len(share), 3, 3)).copy()
+    x, y, z = vector / angle
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    turn = (angle * np.asarray(share, dtype=np.float64))[:, None, None]
+    rotations: FloatArray = np.eye(3) + np.sin(turn) * cross + (1.0 - np.cos(turn)) * cross @ cross
+    return rotations

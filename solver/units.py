@@ -19,3 +19,15 @@ DEG_PER_RAD: Final = 180.0 / math.pi
 
 TURN: Final = 2.0 * math.pi
 """One full turn [rad]."""
+
+CM_PER_M: Final = 1e2
+"""Centimetres in a metre."""
+
+M_PER_INCH: Final = 0.0254
+"""Metres in an inch."""
+
+MS_PER_S: Final = 1e3
+"""Milliseconds in a second."""
+
+S_PER_MIN: Final = 60.0
+"""Seconds in a minute."""

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from solver.catalog import load_beam, load_cell, load_robot, load_tool
-from solver.catalog.cell_settings import read_program, read_settings
+from solver.catalog import list_names, load_beam, load_cell, load_robot, load_tool
+from solver.catalog.cell_program import read_program
+from solver.catalog.cell_settings import read_settings
 from solver.catalog.toml_reader import Table
 from solver.cli.main import main
 from solver.model.settings import Sweep
@@ -23,6 +24,7 @@ BLOCK = re.compile(r"^( *)```(\w+)\n(.*?)^ *```", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"# ([\w.]+\.(?:toml|csv))\n")
 CHANGE = re.compile(r"# in ([\w.]+\.toml)(?:, as ([\w.]+\.toml))?\n")
 EXIT_CODE = re.compile(r"# exit code (\d+)$")
+STAMP = re.compile(r"\b[0-9a-f]{12}\b")
 TOP = re.compile(r"^\[+([\w]+)", re.MULTILINE)
 
 
@@ -95,7 +97,22 @@ def commands(page):
     return found
 
 
-@pytest.mark.parametrize("page", ["quickstart.md", "extending.md"])
+def unstamped(text):
+    """A text without the digits of digests and hashes, which any change of a cell changes."""
+    return STAMP.sub("#" * 12, text)
+
+
+def excerpts(page):
+    """The parts of robot programs that a page shows; a tab stands there as an arrow."""
+    return [unstamped(text.replace("→", "\t")) for _, text in blocks(page, "ls")]
+
+
+def written_programs(folder):
+    for path in sorted(folder.glob("*.LS")):
+        yield unstamped(path.read_bytes().decode("ascii").replace("\r\n", "\n"))
+
+
+@pytest.mark.parametrize("page", ["quickstart.md", "extending.md", "robot_program.md"])
 def test_the_commands_of_a_page_give_what_it_shows(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     write_files(page, tmp_path)
@@ -103,9 +120,11 @@ def test_the_commands_of_a_page_give_what_it_shows(page, tmp_path, monkeypatch, 
     for arguments, code, shown in commands(page):
         assert main(arguments) == code, f"posopt {shlex.join(arguments)}: {capsys.readouterr().err}"
         output = capsys.readouterr()
-        printed = [line.rstrip() for line in (output.out + output.err).splitlines()]
-        missing = [line for line in shown if line not in printed]
+        printed = [unstamped(line.rstrip()) for line in (output.out + output.err).splitlines()]
+        missing = [line for line in shown if unstamped(line) not in printed]
         assert not missing, f"posopt {shlex.join(arguments)} no longer prints this"
+    for excerpt in excerpts(page):
+        assert any(excerpt in program for program in written_programs(tmp_path)), excerpt
 
 
 KINDS = {"cells": "cell", "robots": "robot", "tools": "tool", "beams": "beam"}
@@ -125,6 +144,8 @@ HEADINGS = {
     "[settings.weights]": ("cell", "settings.weights"),
     "[settings.steps]": ("cell", "settings.steps"),
     "[program]": ("cell", "program"),
+    "[program.links]": ("cell", "program.links"),
+    "[accuracy]": ("cell", "accuracy"),
     "[robot] of a robot": ("robot", "robot"),
     "At the head of a robot file": ("robot", ""),
     "[dh]": ("robot", "dh"),
@@ -186,7 +207,7 @@ def asked_keys(folder, monkeypatch):
             kinds = {"cell": "cell", "dh": "robot", "tool": "tool", "sections": "beam"}
             kind_of[str(path)] = next(kinds[key] for key in kinds if key in tables)
             load(path)
-    for name in ("groove_hw300", "groove_paper"):
+    for name in list_names("cells"):
         load_cell(name)
     return asked
 
@@ -245,5 +266,13 @@ def test_documented_defaults_of_settings_are_those_of_the_reader():
 
 def test_documented_defaults_of_the_program_are_those_of_the_reader():
     stated = stated_defaults("program")
-    assert stated.count("=") == 7
+    assert stated.count("=") == 17
     assert settings_of(stated, read_program) == plain(read_program(None))
+
+
+def test_documented_defaults_of_links_are_those_of_the_reader():
+    stated = stated_defaults("program.links")
+    assert stated.count("=") == 10
+    without = settings_of("[links]", read_program)
+    assert settings_of(f"[links]\n{stated}", read_program) == without
+    assert without["links"] is not None

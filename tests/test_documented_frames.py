@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -68,6 +69,24 @@ def test_fanuc_world_is_525_mm_above_the_floor(robot):
 def test_shipped_cells_have_the_documented_reference_orientation(cell, tilt):
     for pose in load_cell(cell).waypoint_poses:
         np.testing.assert_allclose(pose[:3, :3], rotation_y(np.radians(tilt)), atol=1e-6)
+
+
+def test_the_zigzag_cell_has_the_documented_reference_orientations():
+    poses = iter(load_cell("zigzag_hw250").waypoint_poses)
+    for one, tilt in zip(load_cell("zigzag_hw250").toolpath.passes, (150, 180, 210), strict=True):
+        for _ in range(len(one)):
+            expected = rotation_y(np.radians(tilt))
+            np.testing.assert_allclose(next(poses)[:3, :3], expected, atol=1e-6)
+
+
+def test_the_user_frame_is_the_world_or_the_workpiece_as_documented():
+    cell = load_cell("zigzag_hw250")
+    assert cell.user_frame.number == 1
+    np.testing.assert_array_equal(
+        cell.user_frame.pose, cell.fanuc_world_from_floor @ cell.workpiece.placement
+    )
+    plain = replace(cell, program=replace(cell.program, uframe=0))
+    np.testing.assert_array_equal(plain.user_frame.pose, np.eye(4))
 
 
 def test_positive_lean_lead_and_spin_turn_as_documented():

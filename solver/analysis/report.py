@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from solver.analysis.check import Check, down_mm
 from solver.analysis.metrics import JointMotion, joint_motion, lean_edge_share
-from solver.analysis.program_check import Check
 from solver.analysis.references import Reference, ReferenceKind, references
 from solver.analysis.result import PlanningResult, Sequence
 from solver.candidates.generate import touch_numbers
@@ -19,12 +19,7 @@ from solver.model.settings import Scheme
 from solver.transforms import FloatArray
 from solver.units import DEG_PER_RAD, MM_PER_M
 
-DOCUMENT_VERSION = 1
-
-
-def rounded_down(clearance: float) -> float:
-    """A clearance [m] in mm, rounded down to 0.1 mm: what is shown is never more than checked."""
-    return float(np.floor(clearance * MM_PER_M * 10.0) / 10.0)
+DOCUMENT_VERSION = 2
 
 
 def table(rows: Rows[Rows[str]]) -> str:
@@ -95,7 +90,7 @@ def _schemes(result: PlanningResult) -> str:
         asked = result.problem.settings.safety_distance * MM_PER_M
         text += (
             f"\n  The safety distance of {asked:g} mm cannot be kept; the best reachable minimum "
-            f"is {rounded_down(result.hard_minimum):.1f} mm"
+            f"is {down_mm(result.hard_minimum):.1f} mm"
             if Scheme.EXACT in result.sequences
             else f"\n  The safety distance of {asked:g} mm is not kept by {result.scheme.value}"
         )
@@ -103,7 +98,7 @@ def _schemes(result: PlanningResult) -> str:
 
 
 def _shown(clearance: float) -> str:
-    return f"{rounded_down(clearance):.1f}"
+    return f"{down_mm(clearance):.1f}"
 
 
 def _branches(sequence: Sequence) -> str:
@@ -213,7 +208,9 @@ def result_document(
         "references": [_reference_document(result, one) for one in compared],
         "waypoints": _waypoints_document(result),
         "program": None if written is None else str(written.path),
-        "checks": [] if written is None else [check_document(one) for one in written.checks],
+        "files": [] if written is None else [str(one) for one in written.paths],
+        "override": None if written is None else written.override,
+        **program_document(None if written is None else written.report),
         "refused": None if refusal is None else str(refusal),
     }
 
@@ -283,6 +280,37 @@ def _waypoints_document(result: PlanningResult) -> list[dict[str, Any]]:
         }
         for index in range(len(sequence.nodes))
     ]
+
+
+def program_document(report: Any | None) -> dict[str, Any]:
+    """Checks, predicted feeds and cycle time of a program as JSON."""
+    if report is None:
+        return {"checks": [], "positions": 0, "feeds": [], "cycle_s": None}
+    return {
+        "checks": [check_document(one) for one in report.checks],
+        "positions": report.positions,
+        "feeds": [
+            {
+                "line": one.place,
+                "asked_mm_s": one.asked * MM_PER_M,
+                "slowest_mm_s": one.prediction.slowest * MM_PER_M,
+                "fastest_mm_s": one.prediction.fastest * MM_PER_M,
+                "best_mm_s": one.prediction.best * MM_PER_M,
+                "limiting_joint": f"J{one.prediction.joint + 1}",
+                "held": one.held,
+            }
+            for one in report.feeds
+        ],
+        "cycle_s": None
+        if report.cycle is None
+        else {
+            "total": report.cycle.total,
+            "grinding": report.cycle.grinding,
+            "linking": report.cycle.linking,
+            "waiting": report.cycle.waiting,
+            "assumed": "joint accelerations",
+        },
+    }
 
 
 def check_document(check: Check) -> dict[str, Any]:

@@ -15,7 +15,7 @@ Beside it stands what the path does not say itself: `orientation_wpr_deg` stated
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Final
@@ -28,9 +28,11 @@ from solver.io.importers import (
     FaceLine,
     ImportOptions,
     ParametricPath,
+    Source,
     face_line_toolpath,
-    load_toolpath,
+    import_source,
     parametric_toolpath,
+    path_source,
 )
 from solver.io.importers.options import CONVENTIONS, LENGTH_UNITS, MAX_FEED, MAX_NOMINAL
 from solver.io.importers.parametric import MAX_POINTS
@@ -62,6 +64,7 @@ class PathOwner:
     workpiece: Workpiece
     robot: Robot
     tool: Tool
+    files: Mapping[str, bytes] = field(default_factory=dict)
 
     def rotation_in(self, target: Frame, source: Frame, rotation: FloatArray) -> FloatArray:
         """Turn a (3, 3) rotation stated in the source frame into the target frame."""
@@ -106,7 +109,7 @@ def read_path(table: Table, owner: PathOwner, override: Path | None = None) -> T
     if override is not None:
         return _load(override, options, orientation, owner)
     if isinstance(spec, Path):
-        return _load(spec, replace(options, frame=frame), orientation, owner)
+        return _load(spec, replace(options, frame=frame), orientation, owner, table.folder)
     with table.located(kinds[0]):
         if isinstance(spec, FaceLine):
             return face_line_toolpath(owner.workpiece, spec)
@@ -129,17 +132,31 @@ def _check_face_path(table: Table, kind: str, workpiece: Workpiece) -> None:
 
 
 def _load(
-    path: Path, options: ImportOptions, orientation: _Orientation | None, owner: PathOwner
+    path: Path,
+    options: ImportOptions,
+    orientation: _Orientation | None,
+    owner: PathOwner,
+    folder: Path | None = None,
 ) -> Toolpath:
+    source = _source(path, owner, folder)
     if orientation is None:
-        return load_toolpath(path, options)
-    toolpath = load_toolpath(path, replace(options, orientation=orientation.rotation))
+        return import_source(source, options)
+    toolpath = import_source(source, replace(options, orientation=orientation.rotation))
     stated = orientation.frame or toolpath.frame
     turned = owner.rotation_in(toolpath.frame, stated, orientation.rotation)
     if np.array_equal(turned, orientation.rotation):
         return toolpath
     # Only now is the file's frame known, in which the importer takes the orientation.
-    return load_toolpath(path, replace(options, orientation=turned))
+    return import_source(source, replace(options, orientation=turned))
+
+
+def _source(path: Path, owner: PathOwner, folder: Path | None) -> Source:
+    """The bytes of a path file: those in memory under its name in the cell, or the file's."""
+    if folder is not None and path.is_relative_to(folder):
+        name = path.relative_to(folder).as_posix()
+        if name in owner.files:
+            return Source(name, owner.files[name])
+    return path_source(path)
 
 
 def _frame(table: Table, key: str) -> Frame | None:

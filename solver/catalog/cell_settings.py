@@ -1,16 +1,13 @@
-"""Settings of planning and of the robot program, as a cell states them."""
+"""Settings of planning, as a cell states them."""
 
 from __future__ import annotations
 
-import datetime
-import re
 from collections.abc import Mapping
 from typing import Final, TypeVar
 
 import numpy as np
 
 from solver.catalog.toml_reader import Table
-from solver.model.problem import ProgramSettings
 from solver.model.robot import JOINTS
 from solver.model.settings import (
     BRANCHES,
@@ -24,10 +21,6 @@ from solver.model.settings import (
 )
 from solver.transforms import FloatArray
 
-PROGRAM_NAME: Final = re.compile(r"[A-Z][A-Z0-9_]{0,35}")
-MAXIMUM_COMMENT: Final = 16
-MAXIMUM_UFRAME: Final = 61
-MAXIMUM_UTOOL: Final = 29
 MAXIMUM_SEED: Final = 2**31 - 1
 
 _Value = TypeVar("_Value")
@@ -61,25 +54,6 @@ def read_settings(table: Table) -> PlanningSettings:
             ),
             seed=table.integer("seed", 0, MAXIMUM_SEED, default.seed),
         )
-
-
-def read_program(table: Table | None) -> ProgramSettings:
-    """Read the table `program`: name, marks and date of the robot program."""
-    default = ProgramSettings()
-    if table is None:
-        return default
-    return ProgramSettings(
-        name=_pattern(
-            table, "name", default.name, PROGRAM_NAME,
-            "up to 36 of A-Z, 0-9 and _, a letter first",
-        ),
-        comment=_comment(table, default.comment),
-        uframe=table.integer("uframe", 0, MAXIMUM_UFRAME, default.uframe),
-        utool=table.integer("utool", 1, MAXIMUM_UTOOL, default.utool),
-        date=_date(table, default.date),
-        time=_time(table, default.time),
-        approach_percent=table.integer("approach_percent", 1, 100, default.approach_percent),
-    )  # fmt: skip
 
 
 def _choice(table: Table, key: str, options: Mapping[str, _Value], default: _Value) -> _Value:
@@ -131,42 +105,3 @@ def _steps(table: Table | None) -> StepLimits:
 
 def _joints(table: Table, key: str, default: FloatArray) -> FloatArray:
     return np.array(table.numbers(key, JOINTS)) if table.has(key) else default
-
-
-def _pattern(table: Table, key: str, default: str, pattern: re.Pattern[str], expected: str) -> str:
-    value = table.text(key, default)
-    if not pattern.fullmatch(value):
-        raise table.error(key, f"expected {expected}, found {value[:40]!r}")
-    return value
-
-
-def _comment(table: Table, default: str) -> str:
-    value = table.text("comment", default)
-    if len(value) > MAXIMUM_COMMENT or not value.isascii() or '"' in value or ";" in value:
-        raise table.error(
-            "comment",
-            f"expected up to {MAXIMUM_COMMENT} ASCII characters without quotes and semicolons, "
-            f"found {value[:40]!r}",
-        )
-    return value
-
-
-def _date(table: Table, default: str) -> str:
-    value = table.text("date", default)
-    found = re.fullmatch(r"([0-9]{2})-([0-9]{2})-([0-9]{2})", value)
-    try:
-        year, month, day = map(int, found.groups() if found else (0, 0, 0))
-        datetime.date(2000 + year, month, day)
-    except ValueError:
-        raise table.error("date", f"expected a date as 'YY-MM-DD', found {value[:40]!r}") from None
-    return value
-
-
-def _time(table: Table, default: str) -> str:
-    return _pattern(
-        table,
-        "time",
-        default,
-        re.compile(r"(?:[01][0-9]|2[0-3]):[0-5][0-9]:[0-5][0-9]"),
-        "a time as 'HH:MM:SS'",
-    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
@@ -9,7 +10,8 @@ import numpy as np
 
 from solver.catalog.bodies import read_body, read_mesh_body, read_rotation
 from solver.catalog.cell_path import PathOwner, read_path
-from solver.catalog.cell_settings import read_program, read_settings
+from solver.catalog.cell_program import read_accuracy, read_program
+from solver.catalog.cell_settings import read_settings
 from solver.catalog.cell_workpiece import read_workpiece
 from solver.catalog.names import file_of
 from solver.catalog.robots import load_robot, read_sources
@@ -61,6 +63,26 @@ def load_cell(
     'HW300'
     """
     document = read_toml(file_of("cells", name_or_path))
+    return read_cell(document, beam=beam, path=path)
+
+
+def read_cell(
+    document: Table,
+    *,
+    beam: str | Path | BeamSection | None = None,
+    path: str | Path | None = None,
+    files: Mapping[str, bytes] | None = None,
+) -> PlanningProblem:
+    """Read a cell from a whole document; see `load_cell`.
+
+    `files` holds path files in memory: a path whose `file` is one of these names is read from
+    there.
+
+    Raises
+    ------
+    InputError
+        As `load_cell`.
+    """
     head = document.table("cell")
     name, title = head.name("name"), head.text("title")
     robot_table = document.table("robot")
@@ -71,12 +93,13 @@ def load_cell(
         tool = load_tool(tool_table.text("model"), relative_to=document.folder)
     workpiece = read_workpiece(document, beam, robot)
     fixtures = _fixtures(document, head)
-    owner = PathOwner(workpiece, robot, tool)
+    owner = PathOwner(workpiece, robot, tool, files or {})
     toolpath = read_path(document.table("path"), owner, None if path is None else Path(path))
     bodies = _body_set(robot_table, robot)
     windows = _joint_windows(robot_table.optional_table("windows_deg"), robot)
     settings = read_settings(document.table("settings"))
     program = read_program(document.optional_table("program"))
+    accuracy = read_accuracy(document.optional_table("accuracy"))
     assumptions = document.texts("assumptions", default=())
     read_sources(document)
     document.finish()
@@ -92,6 +115,7 @@ def load_cell(
             settings=settings,
             program=program,
             joint_windows=windows,
+            accuracy=accuracy,
             title=title,
             assumptions=assumptions,
         )

@@ -15,6 +15,9 @@ from solver.transforms import FloatArray, rigid
 OUTSIDERS = ("tool", "floor")
 """Groups that neighbours may name besides the robot's own: all of the tool, and the floor."""
 
+ACCELERATION_TIME = 0.3
+"""Time in which a joint whose acceleration is not stated reaches its full speed [s]."""
+
 
 def load_robot(name_or_path: str | Path, *, relative_to: Path | None = None) -> Robot:
     """Load a shipped robot by name, or one of a TOML file.
@@ -34,7 +37,9 @@ def load_robot(name_or_path: str | Path, *, relative_to: Path | None = None) -> 
     dh = _denavit_hartenberg(document.table("dh"))
     flange = _flange(document.table("flange"))
     pendant = document.table("pendant").matrix("model_from_pendant", JOINTS, JOINTS, 1000)
-    limits, speeds, elbow = _limits(document.table("limits"))
+    motion = document.table("limits")
+    limits, speeds, elbow = _limits(motion)
+    accelerations = _accelerations(motion, speeds)
     ranges = document.table("cost").numbers("ranges_deg", JOINTS)
     body_sets = _body_sets(document)
     neighbours = _neighbours(document, body_sets)
@@ -51,6 +56,7 @@ def load_robot(name_or_path: str | Path, *, relative_to: Path | None = None) -> 
             model_from_pendant=np.array(pendant, dtype=np.float64),
             limits=limits,
             speeds=speeds,
+            accelerations=accelerations,
             elbow_limits=elbow,
             cost_ranges=np.array(ranges),
             payload=payload,
@@ -85,6 +91,11 @@ def _limits(table: Table) -> tuple[FloatArray, FloatArray, FloatArray]:
             )
     speeds = np.array(table.numbers("speed_deg_s", JOINTS))
     return np.column_stack([lower, upper]), speeds, np.array(table.numbers("elbow_deg", 2))
+
+
+def _accelerations(table: Table, speeds: FloatArray) -> FloatArray:
+    default = tuple(speeds / ACCELERATION_TIME)
+    return np.array(table.numbers("acceleration_deg_s2", JOINTS, default))
 
 
 def _body_sets(document: Table) -> dict[str, tuple[LinkBody, ...]]:

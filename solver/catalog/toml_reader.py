@@ -21,7 +21,7 @@ MAXIMUM_LENGTH: Final = 100.0
 """Largest length that a file may state [m]."""
 
 MAXIMUM_ANGLE: Final = 36_000.0 * DEG
-"""Largest angle or angular speed that a file may state [rad, rad/s]."""
+"""Largest angle, angular speed or acceleration that a file may state [rad, rad/s, rad/s^2]."""
 
 MAXIMUM_NUMBER: Final = 1e9
 """Largest number without a length or an angle as its unit."""
@@ -368,6 +368,7 @@ class Table:
 _UNITS: Final[tuple[tuple[str, float, float, str], ...]] = (
     ("_mm_s", MM, MAXIMUM_LENGTH, " in mm/s"),
     ("_mm", MM, MAXIMUM_LENGTH, " in mm"),
+    ("_deg_s2", DEG, MAXIMUM_ANGLE, " in deg/s^2"),
     ("_deg_s", DEG, MAXIMUM_ANGLE, " in deg/s"),
     ("_deg", DEG, MAXIMUM_ANGLE, " in deg"),
     ("_kg", 1.0, MAXIMUM_NUMBER, " in kg"),

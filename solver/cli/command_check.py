@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from solver.cli.output import emit_json, refused, say
+from solver.cli.output import TerminalMonitor, emit_json, refused, say
 from solver.errors import InputError, RefusedError, UnknownNameError
+
+if TYPE_CHECKING:
+    from solver.io.ls_program import ProgramFile
+    from solver.model.problem import PlanningProblem
 
 HELP = "check a program against its cell, on the nominal model"
 
@@ -25,52 +30,59 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Check and report; exit code 4 when a check failed."""
-    from solver.analysis.report import check_document
-    from solver.catalog import load_cell
-    from solver.io.ls_reader import read_program_file
-    from solver.pipeline.programming import (
-        BEAM_REMARK,
-        CELL_REMARK,
-        check_program,
-        required_clearance,
-    )
+    from solver.analysis.report import program_document
+    from solver.io.ls_program_set import read_program_set
+    from solver.pipeline.program_check import inspect_program
+    from solver.pipeline.remarks import required_clearance, stated_override
 
-    written = read_program_file(Path(options.program))
-    stated = {
-        prefix: remark.removeprefix(prefix).strip()
-        for remark in written.remarks
-        for prefix in (CELL_REMARK, BEAM_REMARK)
-        if remark.startswith(prefix)
-    }
-    cell = options.cell or stated.get(CELL_REMARK)
+    programs = read_program_set(Path(options.program))
+    problem = _problem(options, programs.main)
+    monitor = TerminalMonitor()
+    try:
+        report = inspect_program(
+            problem, programs, required_clearance(problem, programs.main), monitor
+        )
+    finally:
+        monitor.close()
+    override = stated_override(programs.main)
+    if options.as_json:
+        document = {
+            "format": "posopt-check",
+            "version": 2,
+            "program": options.program,
+            "cell": problem.name,
+            "override": override,
+            "passed": not report.failed,
+            **program_document(report),
+        }
+        emit_json(document, options.as_json)
+    if options.as_json != "-":
+        for check in report.checks:
+            say(str(check))
+        if override is not None:
+            say(f"this program was written in spite of failed checks: {override}")
+    if report.failed:
+        names = ", ".join(check.name for check in report.failed)
+        message = f"{len(report.failed)} of {len(report.checks)} checks failed: {names}"
+        return refused(options.command, RefusedError(message))
+    if options.as_json != "-":
+        count = len(report.checks)
+        say(f"all {count} checks passed on the nominal model of cell {problem.name}")
+    return 0
+
+
+def _problem(options: argparse.Namespace, main: ProgramFile) -> PlanningProblem:
+    """The cell that was given, or the one that the program's remarks name."""
+    from solver.catalog import load_cell
+    from solver.pipeline.remarks import BEAM_REMARK, CELL_REMARK, remark_value
+
+    cell = options.cell or remark_value(main, CELL_REMARK)
     if not cell:
         raise InputError(f"{options.program}: no remark names its cell; give it with --cell CELL")
-    beam = options.beam or (None if options.cell else stated.get(BEAM_REMARK))
+    beam = options.beam or (None if options.cell else remark_value(main, BEAM_REMARK))
     try:
-        problem = load_cell(cell, beam=beam, path=options.path)
+        return load_cell(cell, beam=beam, path=options.path)
     except UnknownNameError as error:
         if options.cell:
             raise
         raise InputError(f"{error}; give the file of the program's cell with --cell") from error
-    checks = check_program(problem, written, required_clearance(problem, written))
-    failed = [check for check in checks if not check.passed]
-    if options.as_json:
-        document = {
-            "format": "posopt-check",
-            "version": 1,
-            "program": options.program,
-            "cell": problem.name,
-            "passed": not failed,
-            "checks": [check_document(check) for check in checks],
-        }
-        emit_json(document, options.as_json)
-    if options.as_json != "-":
-        for check in checks:
-            say(str(check))
-    if failed:
-        names = ", ".join(check.name for check in failed)
-        message = f"{len(failed)} of {len(checks)} checks failed: {names}"
-        return refused(options.command, RefusedError(message))
-    if options.as_json != "-":
-        say(f"all {len(checks)} checks passed on the nominal model of cell {problem.name}")
-    return 0

@@ -15,7 +15,7 @@ from solver.model.settings import Scheme
 from solver.units import MM
 
 if TYPE_CHECKING:
-    from solver.pipeline.programming import WrittenProgram
+    from solver.pipeline.programming import ProgramOrder, WrittenProgram
 
 HELP = "plan a cell, write its program and print the summary"
 DEFAULT_CELL = "groove_hw300"
@@ -42,11 +42,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME.LS",
         help="where the program is written (default: the cell's program name in this folder)",
     )
+    parser.add_argument(
+        "--post",
+        metavar="NAME",
+        help="fanuc-joint, fanuc-cartesian, csv or json (default: the cell's)",
+    )
+    parser.add_argument(
+        "--simplify",
+        metavar="TOL",
+        help="drop positions while the moved TCP stays within TOL mm of the path",
+    )
     parser.add_argument("--no-program", action="store_true", help="plan only, write no program")
     parser.add_argument(
         "--accept-clearance",
         metavar="MM",
         help="accept this least clearance where the safety distance cannot be met",
+    )
+    parser.add_argument(
+        "--override",
+        metavar="REASON",
+        help="write NAME_OVR.LS although checks fail; the reason is stamped into it",
     )
 
 
@@ -54,33 +69,33 @@ def run(options: argparse.Namespace) -> int:
     """Plan, write and report."""
     from solver.analysis.report import result_document, summary
     from solver.catalog import load_cell
+    from solver.io.posts import post_named
     from solver.pipeline.planning import plan
-    from solver.pipeline.programming import check_program_settings, write_program
+    from solver.pipeline.programming import check_order, write_program
 
-    accepted = None
-    if options.accept_clearance is not None:
-        accepted = positive_number(options.accept_clearance, "--accept-clearance") * MM
+    order = _order(options)
     problem = load_cell(options.cell, beam=options.beam, path=options.path)
     if options.scheme:
         scheme = Scheme(options.scheme)
         problem = replace(problem, settings=replace(problem.settings, scheme=scheme))
-    target = Path(f"{problem.program.name}.LS" if options.out is None else options.out)
+    suffix = post_named(order.post or problem.program.post).suffix
+    target = Path(f"{problem.program.name}{suffix}" if options.out is None else options.out)
     if not options.no_program:
-        check_program_settings(problem, target)
+        check_order(problem, target, order)
     monitor = TerminalMonitor()
+    written = None
+    refusal = None
     started = time.perf_counter()
     try:
         result = plan(problem, monitor, compare=(Scheme.EXACT, Scheme.F2))
+        seconds = time.perf_counter() - started
+        if not options.no_program:
+            try:
+                written = write_program(result, target, order, monitor)
+            except RefusedError as error:
+                refusal = error
     finally:
         monitor.close()
-    seconds = time.perf_counter() - started
-    written = None
-    refusal = None
-    if not options.no_program:
-        try:
-            written = write_program(result, target, accepted)
-        except RefusedError as error:
-            refusal = error
     if options.as_json != "-":
         say(summary(result))
         say(f"planned in {seconds:.2f} s")
@@ -89,18 +104,51 @@ def run(options: argparse.Namespace) -> int:
     if refusal is not None:
         return refused(options.command, refusal)
     if written is not None and options.as_json != "-":
-        _report(written, needless=accepted is not None and result.clearance_met)
+        _report(written, needless=order.accepted_clearance is not None and result.clearance_met)
     return 0
 
 
+def _order(options: argparse.Namespace) -> ProgramOrder:
+    from solver.io.posts import post_named
+    from solver.pipeline.programming import ProgramOrder
+
+    accepted = simplify = None
+    if options.accept_clearance is not None:
+        accepted = positive_number(options.accept_clearance, "--accept-clearance") * MM
+    if options.simplify is not None:
+        simplify = positive_number(options.simplify, "--simplify") * MM
+    if options.post is not None:
+        post_named(options.post)
+    return ProgramOrder(accepted, options.post, simplify, options.override)
+
+
+_SHOWN = ("clearance", "between", "links", "net", "path between", "feed")
+
+
 def _report(written: WrittenProgram, *, needless: bool) -> None:
-    """Say what was written, and how near it comes at its positions and between them."""
+    """Say what was written, how near it comes, how fast it runs, and what failed."""
     for check in written.checks:
-        if check.name.startswith(("clearance", "between")):
+        if check.name.startswith(_SHOWN) or not check.passed:
             say(str(check))
+    if written.report.cycle is not None:
+        cycle = written.report.cycle
+        say(
+            f"estimated cycle {cycle.total:.1f} s: {cycle.grinding:.1f} s grinding, "
+            f"{cycle.linking:.1f} s on links, {cycle.waiting:.1f} s waiting "
+            "(accelerations are assumed)"
+        )
     if needless:
         say("the safety distance is met; --accept-clearance was not needed")
+    names = ", ".join(map(str, written.paths))
+    failed = len(written.report.failed)
+    count = len(written.checks)
+    if written.override is not None:
+        say(
+            f"wrote {names} although {failed} of {count} checks failed: override "
+            f"{written.override!r}, stamped into it"
+        )
+        return
     say(
-        f"wrote {written.path}: {len(written.checks)} checks passed after reading it back "
-        "(nominal model; verify in T1)"
+        f"wrote {names}: {written.report.positions} positions, {count} checks passed after "
+        "reading it back (nominal model; verify in T1)"
     )

@@ -18,12 +18,13 @@ _TARGET: Final = re.compile(
 )
 _SPEED: Final = re.compile(
     r"(?:(?P<value>[0-9]{1,6}(?:\.[0-9]{0,4})?|\.[0-9]{1,4})|A?R\[[^\]\n]*\])[ \t]*"
-    r"(?P<unit>%|mm/sec|cm/min|inch/min|deg/sec|sec|msec)(?=[ \t\n]|$)"
-    r"|(?P<word>max_speed|WELD_SPEED)\b",
+    r"(?P<unit>%|mm/se[ck]|cm/min|inch/min|deg/se[ck]|se[ck]|mse[ck])(?=[ \t\n]|$)"
+    r"|(?P<word>max_speed|max_Geschw\.|WELD_SPEED)(?=[ \t\n]|$)",
     re.ASCII,
 )
 _TERMINATION: Final = re.compile(
     r"(?P<fine>FINE)(?=[ \t\n]|$)|CNT[ \t]*(?:(?P<cnt>[0-9]{1,3})(?=[ \t\n]|$)|A?R\[[^\]\n]*\])"
+    r"|(?P<corner>C[RD])[ \t]*(?:[0-9]{1,4}(?:,[0-9]{1,4})?(?=[ \t\n]|$)|A?R\[[^\]\n]*\])"
 )
 _OPTION: Final = re.compile(r"(?:[^\s\[\]]|\[[^\]\n]*\])+")
 _NESTED_MOTION: Final = re.compile(r"[JLCAS]$|@?P\[")
@@ -56,7 +57,7 @@ def read_motion(
         positions=numbers if len(numbers) == len(found) else (),
         targets=tuple(one[0] for one in found),
         speed=speed,
-        termination="FINE" if termination["fine"] else "CNT",
+        termination=termination["fine"] or (termination[0] if termination["corner"] else "CNT"),
         cnt=cnt,
         options=_options(scanner),
         uframe=uframe,
@@ -73,7 +74,8 @@ def _speed(scanner: Scanner, letter: str) -> Speed:
     found = scanner.need(_SPEED, "a speed such as 20% or 250mm/sec")
     if found["word"] is not None:
         return Speed(None, found["word"], found[0])
-    unit = found["unit"]
+    # German controllers write sek.
+    unit = found["unit"].replace("sek", "sec")
     if (letter == "J") != (unit == "%") and unit not in {"sec", "msec"}:
         raise scanner.error(f"a {letter} move takes no speed in {unit}", found.start())
     if found["value"] is None:

@@ -17,12 +17,13 @@ _CLOSE: Final = re.compile(r"\}[ \t]*;")
 _GROUP: Final = re.compile(r"GP[ \t]*([1-8])[ \t]*:")
 _FRAME: Final = re.compile(r"UF[ \t]*:[ \t]*([0-9]{1,3}|F)\b", re.ASCII)
 _TOOL: Final = re.compile(r"UT[ \t]*:[ \t]*([0-9]{1,3}|F)\b", re.ASCII)
-_CONFIG: Final = re.compile(r"CONFIG[ \t]*:[ \t]*'([^'\n]{1,40})'")
+# German controllers write KONFIG and RX, RY, ...; an untaught position may have an empty CONFIG.
+_CONFIG: Final = re.compile(r"[CK]ONFIG[ \t]*:[ \t]*'([^'\n]{0,40})'")
 _COMMA: Final = re.compile(",")
-_AXIS: Final = re.compile(r"(J[1-9]|E[1-9]|[XYZWPR])[ \t]*=[ \t]*")
+_AXIS: Final = re.compile(r"(J[1-9]|E[1-9]|R?([XYZWPR]))[ \t]*=[ \t]*")
 _VALUE: Final = re.compile(
     r"(?:(?P<number>[+-]?(?:[0-9]{1,9}(?:\.[0-9]{0,9})?|\.[0-9]{1,9}))|\*{1,20})"
-    r"[ \t]+(?P<unit>deg|mm)\b",
+    r"[ \t]*(?P<unit>deg|mm)\b",
     re.ASCII,
 )
 
@@ -100,7 +101,8 @@ def _frame_number(text: str) -> int | None:
 
 
 def _axis(scanner: Scanner) -> Axis:
-    name = scanner.need(_AXIS, "an axis such as J1= or X =")[1]
+    heading = scanner.need(_AXIS, "an axis such as J1= or X =")
+    name = heading[2] or heading[1]
     found = scanner.need(_VALUE, f"a number with its unit for {name}")
     number, unit = found["number"], found["unit"]
     expected = {"X": "mm", "Y": "mm", "Z": "mm", "W": "deg", "P": "deg", "R": "deg"}

@@ -60,19 +60,25 @@ class Position:
 
     @property
     def first(self) -> GroupPosition:
-        """The group that moves the arm: the first one."""
+        """The first group that is given, GP1 in all programs of an arm."""
         return self.groups[0]
 
     @property
+    def arm(self) -> GroupPosition | None:
+        """GP1, which moves the arm; None where the position is one of other groups only."""
+        return self.first if self.first.group == 1 else None
+
+    @property
     def joints_deg(self) -> tuple[float, ...]:
-        """J1 to J6 of the first group exactly as written [deg]."""
-        if not self.first.is_joint:
+        """J1 to J6 of the arm exactly as written [deg]."""
+        arm = self._needed_arm()
+        if not arm.is_joint:
             raise InputError(f"P[{self.number}] is Cartesian, joints were expected", self.place)
-        if tuple(axis.name for axis in self.first.axes) != JOINT_NAMES:
+        if tuple(axis.name for axis in arm.axes) != JOINT_NAMES:
             raise InputError(
-                f"P[{self.number}] has {len(self.first.axes)} joints, six were expected", self.place
+                f"P[{self.number}] has {len(arm.axes)} joints, six were expected", self.place
             )
-        for axis in self.first.axes:
+        for axis in arm.axes:
             if axis.unit != "deg":
                 raise InputError(
                     f"{axis.name} of P[{self.number}] is in {axis.unit}, degrees were expected",
@@ -82,22 +88,29 @@ class Position:
 
     @property
     def joints(self) -> FloatArray:
-        """(6,) pendant joints of the first group [rad]."""
+        """(6,) pendant joints of the arm [rad]."""
         return np.array(self.joints_deg) * DEG
 
     @property
     def cartesian(self) -> tuple[FloatArray, FloatArray]:
-        """X Y Z (3,) [m] and W P R (3,) [rad] of the first group, frame_from_tool."""
-        if self.first.is_joint:
+        """X Y Z (3,) [m] and W P R (3,) [rad] of the arm, frame_from_tool."""
+        if self._needed_arm().is_joint:
             raise InputError(
                 f"P[{self.number}] is given in joints, X Y Z W P R was expected", self.place
             )
         values = np.array(self._taught())
         return values[:3] * MM, values[3:] * DEG
 
+    def _needed_arm(self) -> GroupPosition:
+        if self.arm is None:
+            raise InputError(
+                f"P[{self.number}] holds GP{self.first.group} but not GP1, the arm", self.place
+            )
+        return self.arm
+
     def _taught(self) -> tuple[float, ...]:
         values = []
-        for axis in self.first.axes:
+        for axis in self._needed_arm().axes:
             if axis.value is None:
                 raise InputError(
                     f"{axis.name} of P[{self.number}] was never taught (********)", self.place
@@ -129,7 +142,8 @@ class Motion:
     targets : tuple of str
         The targets as written.
     termination : str
-        'FINE' or 'CNT'; `cnt` is its value, None for FINE and where a register gives it.
+        'FINE', 'CNT', or a corner region or distance as written ('CR10', 'CD50'); `cnt` is the
+        value of CNT, None for the others and where a register gives it.
     options : tuple of str
         Everything after the termination, as written.
     uframe, utool : int or None

@@ -36,9 +36,10 @@ _ENTRY: Final = re.compile(r'((?:[^";]|"[^"\n]*")*);')
 _PREFIX: Final = re.compile(r"[ \t]*(?:(?:([0-9]{1,6})[ \t]*)?:)?[ \t]*")
 _CONTINUED: Final = re.compile(r"[ \t]*:")
 _TWO_ENDS: Final = re.compile(r";[ \t]*;$")
-_BEGINNING: Final = re.compile(r"[A-Za-z$!(@_\-]|//|$")
+_BEGINNING: Final = re.compile(r"[A-Za-z$!(@_=\-]|//|$")
 _SELECTION: Final = re.compile(
-    r"(UFRAME_NUM|UTOOL_NUM)[ \t]*+(?:\[[ \t]*GP1[^\]]*\][ \t]*+)?=[ \t]*+(?:([0-9]{1,3})$|.*)"
+    r"(UFRAME_NUM|UTOOL_NUM)[ \t]*+(?:\[[ \t]*(?:GP[2-8][ \t]*,[ \t]*)*GP1[^\]]*\][ \t]*+)?="
+    r"[ \t]*+(?:([0-9]{1,3})$|.*)"
 )
 
 
@@ -134,7 +135,9 @@ def _sections(source: SourceText) -> dict[str, _Section]:
         name = heading[1]
         if name not in _SECTIONS:
             raise InputError(f"unknown section /{name[:EXCERPT]}", source.place(start))
-        if found and _SECTIONS.index(name) <= _SECTIONS.index(found[-1][0]):
+        # Controllers write /APPL several times.
+        again = name == "APPL" and found and found[-1][0] == "APPL"
+        if found and not again and _SECTIONS.index(name) <= _SECTIONS.index(found[-1][0]):
             raise InputError(f"section /{name} is out of order or repeated", source.place(start))
         if name != "PROG" and source.text[heading.end() : end].strip(" \t"):
             raise InputError(f"text after /{name}", source.place(heading.end()))

@@ -2,256 +2,236 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
-from collections.abc import Callable, Iterator
-from fractions import Fraction
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
-import numpy as np
+from solver.errors import InputError, Place, PosoptError, RefusedError
+from solver.io.atomic import staged, write_atomically
+from solver.io.csv_moves_reader import read_csv_moves
+from solver.io.json_program_reader import read_json_program
+from solver.io.ls_differences import ls_differences, part_mark
+from solver.io.ls_program import ProgramFile
+from solver.io.ls_reader import SIZE_LIMIT, read_program, read_program_file
+from solver.io.neutral_differences import program_differences, row_differences
+from solver.io.posts.post import FileForm, Post, PostOptions
+from solver.model.program import JointProgram
+from solver.model.robot import Robot
 
-from solver.errors import InputError, Place, RefusedError
-from solver.io.atomic import staged
-from solver.io.ls_program import Motion, Position, ProgramFile
-from solver.io.ls_reader import read_program
-from solver.io.posts.fanuc_joint import FANUC_JOINT
-from solver.io.posts.post import DEFAULT_OPTIONS, Post, PostOptions
-from solver.model.program import JOINT_DECIMALS, JointProgram, Move
-from solver.model.toolpath import Event, EventKind
-from solver.units import DEG_PER_RAD
+Found = tuple[ProgramFile, ...] | JointProgram
+"""What was read back: .LS files, the main one first, or the program that a CSV or JSON holds."""
 
-_WAIT: Final = re.compile(r"WAIT +([0-9]*\.[0-9]+)\(sec\)")
-_OUTPUT: Final = re.compile(r"DO\[([0-9]+)\]=(ON|OFF)")
-_CALL: Final = re.compile(r"CALL ([A-Z][A-Z0-9_]*)")
+_NUMBERED: Final = re.compile(r"[A-Z][A-Z0-9_]*[0-9]", re.ASCII)
 
-WAIT_STEP: Final = Fraction(1, 100)
-"""Unit in which a controller waits [s]."""
 
-MOTION_STEP: Final = Fraction(1, 1000)
-"""Unit in which a motion time is posted [s]."""
+@dataclass(frozen=True, slots=True)
+class WrittenFiles:
+    """Files that were written and read back.
+
+    Attributes
+    ----------
+    paths : tuple of paths
+        The main program first, then its parts.
+    found : tuple of ProgramFile, or JointProgram
+        What was read back.
+    stale : tuple of paths
+        Parts of an earlier, longer program of this name that still lie in the folder; nothing
+        calls them any more.
+    """
+
+    paths: tuple[Path, ...]
+    found: Found
+    stale: tuple[Path, ...]
 
 
 def write_verified(
     program: JointProgram,
     path: Path,
-    verify: Callable[[ProgramFile], None],
-    options: PostOptions = DEFAULT_OPTIONS,
-    post: Post = FANUC_JOINT,
-) -> ProgramFile:
-    """Write a FANUC program, read it back from disk, check it, and only then give it its name.
+    verify: Callable[[Found], None],
+    options: PostOptions,
+    post: Post,
+    robot: Robot,
+) -> WrittenFiles:
+    """Write a program, read all its files back from disk, check them, and only then name them.
 
     Parameters
     ----------
     program : JointProgram
         What is to be written; its joints are rounded already.
     path : Path
-        The final name; its stem must be the program's name, under which a controller loads it.
+        The final name of the main program; its stem must be the program's name, under which a
+        controller loads it. Parts lie beside it.
     verify : callable
-        Gets the program as read back and raises when it is not fit to run (kinematics,
-        clearances). Whatever it raises passes through, and nothing is written.
-
+        Gets what was read back and raises when it is not fit to run (kinematics, clearances).
+        Whatever it raises passes through, and nothing is written.
     options : PostOptions
         What the controller accepts.
     post : Post
-        A post whose files are FANUC .LS.
-
-    Returns
-    -------
-    ProgramFile
-        What was read back.
+        What the files look like.
+    robot : Robot
+        Whose joints the program holds.
 
     Raises
     ------
     RefusedError
-        When what was read back differs from the program; it says what and where. A file that
-        bore the final name before keeps its content.
+        When what was read back differs from the program; it says what and where. Files that
+        bore the final names before keep their content.
+    InputError
+        When a file cannot be written, or a part would replace a file that is no part of this
+        program. The parts get their names first and the main program last; when that fails in
+        the middle, the files that were replaced already are put back.
     """
     path = Path(path)
-    if path.stem.upper() != program.name or path.suffix.upper() != post.suffix:
+    if path.stem.upper() != program.name or path.suffix.upper() != post.suffix.upper():
         raise InputError(
-            f"a controller loads program {program.name} from a file named "
+            f"program {program.name} belongs into a file of its name, "
             f"{program.name}{post.suffix}, not {path.name}",
             Place(str(path)),
         )
-    data = post.render(program, options).encode("ascii")
-    with staged(path, data) as temporary:
-        found = _read_back(temporary, path, data)
-        for difference in differences(program, found, options):
+    rendered = post.render(program, options, robot)
+    names = [path.name, *(f"{Path(one.name).stem}{path.suffix}" for one in rendered[1:])]
+    paths = tuple(path.with_name(name) for name in names)
+    data = [one.text.encode("utf-8") for one in rendered]
+    _refuse_foreign_parts(paths[1:], program.name)
+    with _placed_together(paths, data) as temporaries:
+        found, faults = _read_back(program, options, post, robot, paths, temporaries, data)
+        for difference in faults:
             raise RefusedError(f"{path.name} was not written: read back, {difference}")
         verify(found)
-    return found
-
-
-def _read_back(temporary: Path, path: Path, data: bytes) -> ProgramFile:
-    try:
-        on_disk = temporary.read_bytes()
-        found = read_program(on_disk, path.name)
-    except (OSError, InputError) as error:
-        raise RefusedError(f"{path.name} was not written: read back, {error}") from error
-    if on_disk != data:
-        raise RefusedError(
-            f"{path.name} was not written: read back, its {len(on_disk)} bytes differ from the "
-            f"{len(data)} that were sent to the disk"
-        )
-    return found
+    stale = tuple(_stale_parts(path, program.name, paths)) if path.suffix.upper() == ".LS" else ()
+    return WrittenFiles(paths, found, stale)
 
 
 def differences(
-    program: JointProgram, found: ProgramFile, options: PostOptions = DEFAULT_OPTIONS
+    program: JointProgram,
+    found: Found,
+    options: PostOptions,
+    robot: Robot,
+    form: FileForm = FileForm.FANUC_JOINT,
 ) -> Iterator[str]:
-    """Yield one sentence for every difference between a program and what a file says."""
-    yield from _header_differences(program, found)
-    yield from _order_differences(program, found, options)
-    if len(found.moves) != len(program.moves):
-        yield f"it has {len(found.moves)} moves instead of {len(program.moves)}"
-        return
-    if list(found.positions) != list(range(1, len(program.moves) + 1)):
-        yield f"its positions are not numbered 1 to {len(program.moves)}"
-        return
-    for number, (move, motion) in enumerate(zip(program.moves, found.moves, strict=True), start=1):
-        for difference in _motion_differences(number, move, motion, program):
-            yield f"line {motion.place.line} {difference}"
-        position = found.positions[number]
-        for difference in _position_differences(move, position, program):
-            yield f"P[{number}] {difference}"
+    """Yield one sentence for every difference between a program and what was read.
+
+    `form` says which positions .LS files must hold; a JointProgram is compared as it is.
+    """
+    if isinstance(found, JointProgram):
+        return program_differences(program, found)
+    return ls_differences(program, found, options, robot, form)
 
 
-def _header_differences(program: JointProgram, found: ProgramFile) -> Iterator[str]:
-    count = str(len(found.instructions))
-    stamp = f"DATE {program.date}  TIME {program.time}"
-    for what, value, expected in (
-        ("its name", found.name, program.name),
-        ("its kind", found.kind, ""),
-        ("its comment", found.comment, program.comment),
-        ("its remarks", found.remarks, program.remarks),
-        ("UFRAME_NUM", found.uframe, program.uframe),
-        ("UTOOL_NUM", found.utool, program.utool),
-        ("its LINE_COUNT", found.attributes.get("LINE_COUNT"), count),
-        ("its creation", found.attributes.get("CREATE"), stamp),
-        ("its modification", found.attributes.get("MODIFIED"), stamp),
-        ("its motion group", found.attributes.get("DEFAULT_GROUP"), "1,*,*,*,*"),
-    ):
-        if value != expected:
-            yield f"{what} reads {value!r} instead of {expected!r}"
-    for expected_number, one in enumerate(found.instructions, start=1):
-        if one.number != expected_number:
-            yield f"line {one.place.line} has number {one.number} instead of {expected_number}"
+def _read_back(
+    program: JointProgram,
+    options: PostOptions,
+    post: Post,
+    robot: Robot,
+    paths: Sequence[Path],
+    temporaries: Sequence[Path],
+    data: Sequence[bytes],
+) -> tuple[Found, Iterator[str]]:
+    """Return what stands on the disk and how it differs from the program."""
+    main = paths[0].name
+    try:
+        on_disk = [temporary.read_bytes() for temporary in temporaries]
+        match post.form:
+            case FileForm.CSV:
+                rows = read_csv_moves(on_disk[0], main)
+                found: Found = replace(program, moves=tuple(row.move for row in rows))
+                faults = row_differences(program, rows, robot)
+            case FileForm.JSON:
+                found = read_json_program(on_disk[0], main)
+                faults = program_differences(program, found)
+            case FileForm.FANUC_JOINT | FileForm.FANUC_CARTESIAN:
+                pairs = zip(on_disk, paths, strict=True)
+                found = tuple(read_program(one, path.name) for one, path in pairs)
+                faults = ls_differences(program, found, options, robot, post.form)
+    except (OSError, InputError) as error:
+        raise RefusedError(f"{main} was not written: read back, {error}") from error
+    for path, one, sent in zip(paths, on_disk, data, strict=True):
+        if one != sent:
+            raise RefusedError(
+                f"{main} was not written: read back, the {len(one)} bytes of {path.name} differ "
+                f"from the {len(sent)} that were sent to the disk"
+            )
+    return found, faults
 
 
-def _order_differences(
-    program: JointProgram, found: ProgramFile, options: PostOptions
-) -> Iterator[str]:
-    """Compare the instructions, motions being represented by their kind alone."""
-    expected: list[tuple[object, ...]] = [("remark",) for _ in program.remarks]
-    expected += [("uframe", program.uframe), ("utool", program.utool)]
-    for move in program.moves:
-        expected.append(("move",))
-        expected.extend(_event_meaning(event, options) for event in move.events)
-    if len(expected) != len(found.instructions):
-        yield f"it has {len(found.instructions)} instructions instead of {len(expected)}"
-        return
-    for meaning, one in zip(expected, found.instructions, strict=True):
-        actual = ("move",) if one.motion is not None else _meaning(one.text)
-        if not _same(actual, meaning):
-            yield (
-                f"line {one.place.line} reads {one.text[:50]!r} instead of "
-                f"{' '.join(map(str, meaning))}"
+@contextmanager
+def _placed_together(paths: Sequence[Path], data: Sequence[bytes]) -> Iterator[list[Path]]:
+    """Stage all files; when the block ends, they get their names, the first one last.
+
+    When one of them cannot get its name, those that have theirs are put back as they were.
+    """
+    old = {path: path.read_bytes() if path.is_file() else None for path in paths[1:]}
+    placed: list[Path] = []
+    try:
+        with ExitStack() as stack:
+            yield [
+                stack.enter_context(_noted(path, one, placed))
+                for path, one in zip(paths, data, strict=True)
+            ]
+    except BaseException as error:
+        if not placed:
+            raise
+        left = [path.name for path in placed if not _put_back(path, old.get(path))]
+        if not left:
+            raise
+        raise InputError(
+            f"{paths[0].name} was not written ({error}), but its parts {', '.join(left)} are "
+            "already the new ones and could not be put back: write the program again before it "
+            "is loaded",
+            Place(str(paths[0])),
+        ) from error
+
+
+@contextmanager
+def _noted(path: Path, data: bytes, placed: list[Path]) -> Iterator[Path]:
+    with staged(path, data) as temporary:
+        yield temporary
+    placed.append(path)
+
+
+def _put_back(path: Path, old: bytes | None) -> bool:
+    """Give a name back what it held before; say whether that succeeded."""
+    try:
+        if old is None:
+            path.unlink()
+        else:
+            write_atomically(path, old)
+    except (OSError, PosoptError):
+        return False
+    return True
+
+
+def _refuse_foreign_parts(paths: Sequence[Path], main: str) -> None:
+    """Refuse to replace a file whose name posopt chose, unless it is a part of this program."""
+    for path in paths:
+        if path.exists() and not _is_part_of(path, main):
+            raise InputError(
+                f"is no part of {main}, but its name is needed for one; move it away or call the "
+                "program otherwise",
+                Place(str(path)),
             )
 
 
-def _same(actual: tuple[object, ...], expected: tuple[object, ...]) -> bool:
-    if actual[0] == expected[0] == "wait":
-        posted, asked = actual[1], expected[1]
-        return (
-            isinstance(posted, Fraction)
-            and isinstance(asked, Fraction)
-            and 0 <= posted - asked < WAIT_STEP
-        )
-    return actual == expected
+def _stale_parts(path: Path, main: str, written: Sequence[Path]) -> Iterator[Path]:
+    """Yield the files beside `path` that say they are parts of `main` and were not written now."""
+    kept = {one.name.upper() for one in written}
+    for other in sorted(path.absolute().parent.iterdir()):
+        if (
+            other.suffix.upper() == ".LS"
+            and other.name.upper() not in kept
+            and _NUMBERED.fullmatch(other.stem.upper())
+            and _is_part_of(other, main)
+        ):
+            yield other
 
 
-def _event_meaning(event: Event, options: PostOptions) -> tuple[object, ...]:
-    match event.kind:
-        case EventKind.DWELL:
-            return ("wait", _exact(event.value))
-        case EventKind.DIGITAL_OUTPUT:
-            return ("output", int(event.target), event.value == 1.0)
-        case EventKind.CALL:
-            return ("call", event.target)
-        case EventKind.SPINDLE_ON:
-            return ("call", options.spindle_on)
-        case EventKind.SPINDLE_OFF:
-            return ("call", options.spindle_off)
-
-
-def _exact(value: float) -> Fraction:
-    """Return the shortest decimal that denotes `value`, which is what a person asked for."""
-    return Fraction(repr(float(value)))
-
-
-def _meaning(text: str) -> tuple[object, ...]:
-    if text.startswith("!"):
-        return ("remark",)
-    if found := _WAIT.fullmatch(text):
-        return ("wait", Fraction(found[1]))
-    if found := _OUTPUT.fullmatch(text):
-        return ("output", int(found[1]), found[2] == "ON")
-    if found := _CALL.fullmatch(text):
-        return ("call", found[1])
-    what, separator, value = text.partition("=")
-    if separator and value.isascii() and value.isdecimal() and what in {"UFRAME_NUM", "UTOOL_NUM"}:
-        return (what.removesuffix("_NUM").lower(), int(value))
-    return ("something else",)
-
-
-def _motion_differences(
-    number: int, move: Move, motion: Motion, program: JointProgram
-) -> Iterator[str]:
-    facts: tuple[tuple[str, object, object], ...] = (
-        ("moves with", motion.letter, "J"),
-        ("moves to", motion.positions, (number,)),
-        ("ends with", motion.termination, "FINE" if move.cnt is None else "CNT"),
-        ("rounds with CNT", motion.cnt, move.cnt),
-        ("has the options", motion.options, ()),
-        ("runs in user frame", motion.uframe, program.uframe),
-        ("runs with tool", motion.utool, program.utool),
-    )
-    for what, value, expected in facts:
-        if value != expected:
-            yield f"{what} {value!r} instead of {expected!r}"
-    speed = motion.speed
-    if move.percent is not None:
-        if (speed.value, speed.unit) != (move.percent, "%"):
-            yield f"has the speed {speed.text} instead of {move.percent}%"
-        return
-    if move.duration is not None and (
-        speed.value is None
-        or speed.unit != "msec"
-        or not 0 <= _exact(speed.value) * MOTION_STEP - _exact(move.duration) < MOTION_STEP
-    ):
-        yield (
-            f"has the speed {speed.text} instead of {move.duration:g} s, rounded up to a "
-            "millisecond"
-        )
-
-
-def _position_differences(move: Move, position: Position, program: JointProgram) -> Iterator[str]:
-    group = position.first
-    for what, value, expected in (
-        ("has motion groups", tuple(one.group for one in position.groups), (1,)),
-        ("has the user frame", group.uframe, program.uframe),
-        ("has the tool", group.utool, program.utool),
-        ("has external axes", group.extra, ()),
-        ("has the name", position.label, ""),
-    ):
-        if value != expected:
-            yield f"{what} {value!r} instead of {expected!r}"
-    try:
-        read = position.joints_deg
-    except InputError as error:
-        yield f"has no joints ({error.message})"
-        return
-    asked = np.round(move.joints * DEG_PER_RAD, JOINT_DECIMALS)
-    for joint, (degrees, wanted) in enumerate(zip(read, asked.tolist(), strict=True), start=1):
-        if degrees != wanted:
-            yield f"has J{joint} = {degrees:.6f} deg instead of {wanted:.6f} deg"
+def _is_part_of(path: Path, main: str) -> bool:
+    with contextlib.suppress(OSError, PosoptError):
+        if path.is_file() and path.stat().st_size <= SIZE_LIMIT:
+            mark = part_mark(read_program_file(path).remarks)
+            return mark is not None and mark.owner == main
+    return False

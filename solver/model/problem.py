@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from solver.errors import ModelError
+from solver.model.program import NumberedPose
+from solver.model.program_settings import Accuracy, ProgramSettings
 from solver.model.robot import LinkBody, Robot
 from solver.model.settings import PlanningSettings
 from solver.model.shapes import Body
@@ -16,29 +18,13 @@ from solver.model.workpiece import Workpiece
 from solver.transforms import FloatArray, frozen, rigid
 
 
-@dataclass(frozen=True, slots=True)
-class ProgramSettings:
-    """What the robot program is called and how it is marked.
-
-    `date` is 'YY-MM-DD' and `time` 'HH:MM:SS': stated by the cell, never by the clock.
-    `approach_percent` is the joint speed of the move to the first position.
-    """
-
-    name: str = "POSOPT"
-    comment: str = ""
-    uframe: int = 0
-    utool: int = 1
-    date: str = "26-01-01"
-    time: str = "00:00:00"
-    approach_percent: int = 10
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class PlanningProblem:
     """Everything that planning needs; what is computed from it depends on nothing else.
 
     `fixtures` are bodies in the floor frame. `joint_windows` (6, 2) [rad] narrows the robot's
-    pendant limits (a dress pack); `bodies` names the robot's body set.
+    pendant limits (a dress pack); `bodies` names the robot's body set; `accuracy` is what the
+    cell declares, None where it declares nothing.
     """
 
     name: str
@@ -49,8 +35,9 @@ class PlanningProblem:
     fixtures: tuple[Body, ...]
     toolpath: Toolpath
     settings: PlanningSettings
-    program: ProgramSettings = ProgramSettings()
+    program: ProgramSettings = field(default_factory=ProgramSettings)
     joint_windows: FloatArray | None = None
+    accuracy: Accuracy | None = None
     title: str = ""
     assumptions: tuple[str, ...] = ()
 
@@ -92,6 +79,20 @@ class PlanningProblem:
     def fanuc_world_from_floor(self) -> FloatArray:
         """(4, 4) shift from the mounting face to the height of the J2 axis."""
         return rigid(position=(0.0, 0.0, -self.robot.world_height))
+
+    @property
+    def user_frame(self) -> NumberedPose:
+        """The program's user frame: number 0 is fanuc_world, any other the workpiece's frame."""
+        number = self.program.uframe
+        if number == 0:
+            return NumberedPose(0, rigid())
+        pose = self.fanuc_world_from_floor @ self.workpiece.placement
+        return NumberedPose(number, pose, self.program.frame_measured)
+
+    @property
+    def user_tool(self) -> NumberedPose:
+        """The program's tool: flange_from_tcp under its number."""
+        return NumberedPose(self.program.utool, self.tool.tcp, self.program.tool_measured)
 
     @property
     def waypoint_poses(self) -> FloatArray:

@@ -55,6 +55,8 @@ class Robot:
         Linear map theta = model_from_pendant @ J, couplings between J2 and J3 included.
     limits, speeds : (6, 2) [rad] and (6,) [rad/s] arrays
         Of the pendant's joints.
+    accelerations : (6,) array
+        Of the pendant's joints [rad/s^2]; only the estimate of a cycle time reads them.
     elbow_limits : (2,) array
         Bounds of J2 + J3 [rad]: the elbow cannot fold through itself.
     cost_ranges : (6,) array
@@ -73,6 +75,7 @@ class Robot:
     model_from_pendant: FloatArray
     limits: FloatArray
     speeds: FloatArray
+    accelerations: FloatArray
     elbow_limits: FloatArray
     cost_ranges: FloatArray
     payload: float
@@ -87,6 +90,7 @@ class Robot:
         put(self, "model_from_pendant", frozen(self.model_from_pendant, (JOINTS, JOINTS)))
         put(self, "limits", frozen(self.limits, (JOINTS, 2)))
         put(self, "speeds", frozen(self.speeds, (JOINTS,)))
+        put(self, "accelerations", frozen(self.accelerations, (JOINTS,)))
         put(self, "elbow_limits", frozen(self.elbow_limits, (2,)))
         put(self, "cost_ranges", frozen(self.cost_ranges, (JOINTS,)))
         put(self, "body_sets", MappingProxyType(dict(self.body_sets)))
@@ -102,8 +106,11 @@ class Robot:
                 raise ModelError(f"robot {self.name}: J{joint} limits are empty or reversed")
         if not self.elbow_limits[0] < self.elbow_limits[1]:
             raise ModelError(f"robot {self.name}: elbow limits are empty or reversed")
-        if not (np.all(self.speeds > 0.0) and np.all(self.cost_ranges > 0.0)):
-            raise ModelError(f"robot {self.name}: speeds and cost ranges must be positive")
+        rates = np.concatenate([self.speeds, self.accelerations, self.cost_ranges])
+        if not (np.isfinite(rates).all() and np.all(rates > 0.0)):
+            raise ModelError(
+                f"robot {self.name}: speeds, accelerations and cost ranges must be positive"
+            )
 
     def _check_structure(self) -> None:
         """Refuse geometry that the closed-form inverse does not solve."""

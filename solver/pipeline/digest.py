@@ -19,10 +19,10 @@ DECIMALS = 9
 def problem_digest(problem: PlanningProblem) -> str:
     """12 hexadecimal digits over robot, tool, workpiece, fixtures, path, windows and limits.
 
-    The scheme, the weights and the marks of the program are left out: they decide which
-    program is found, not whether it is sound.
+    Of the program's settings those count that its checks compare with; its name and marks, the
+    scheme, the weights and the accelerations (an estimate) are left out.
     """
-    settings = problem.settings
+    settings, program = problem.settings, problem.program
     parts = (
         problem.robot,
         problem.bodies,
@@ -38,6 +38,16 @@ def problem_digest(problem: PlanningProblem) -> str:
         settings.manipulability,
         settings.safety_distance,
         settings.self_margin,
+        settings.steps,
+        problem.accuracy,
+        problem.user_frame.number,
+        problem.user_tool.number,
+        program.payload,
+        program.spindle_on,
+        program.spindle_off,
+        program.path_tolerance,
+        program.feed_tolerance,
+        program.links,
     )
     digest = hashlib.sha256()
     _feed(digest, parts)
@@ -51,7 +61,7 @@ def _feed(digest: Any, value: Any) -> None:
     elif is_dataclass(value):
         digest.update(f"d{type(value).__name__};".encode())
         for field in fields(value):
-            if field.name not in {"title", "assumptions", "source"}:
+            if field.name not in {"title", "assumptions", "source", "accelerations"}:
                 _feed(digest, getattr(value, field.name))
     elif isinstance(value, Mapping):
         digest.update(f"m{len(value)};".encode())

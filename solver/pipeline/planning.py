@@ -18,7 +18,7 @@ from solver.candidates.postures import check_postures
 from solver.collision.kernels_scene import FREE
 from solver.costs.nodes import node_terms
 from solver.costs.penalty import safety_penalty
-from solver.costs.steps import gaps
+from solver.costs.steps import gap_times, gaps
 from solver.model.problem import PlanningProblem
 from solver.model.settings import EdgeCost, Scheme
 from solver.progress import Monitor, SilentMonitor
@@ -71,6 +71,10 @@ def plan(
     for scheme in schemes:
         if scheme is Scheme.EXACT:
             sequences[scheme], extra, hard = exact_sequence(candidates, graph, monitor)
+            if changes_branch(sequences[scheme], problem):
+                # Only then is the bound worth its time: without a change it would not bind.
+                graph = layered_graph(candidates, one_branch=True)
+                sequences[scheme], extra, hard = exact_sequence(candidates, graph, monitor)
             met = hard >= problem.settings.safety_distance
         else:
             sequences[scheme] = paper_sequence(candidates, graph, scheme, monitor)
@@ -82,10 +86,24 @@ def plan(
     )
 
 
-def layered_graph(candidates: CandidateSet) -> LayeredGraph:
-    """The graph of the feasible candidates with the costs of the exact scheme."""
+BRANCH_APART = 100.0
+"""What keeps the leans of two branches apart [rad], so that one bound holds both together."""
+
+
+def layered_graph(candidates: CandidateSet, *, one_branch: bool = False) -> LayeredGraph:
+    """The graph of the feasible candidates with the costs of the exact scheme.
+
+    With `one_branch` the branch may change on links alone: within a pass the leans of two
+    branches are farther apart than any bound.
+    """
     problem, nodes = candidates.problem, candidates.nodes
     rules = gaps(problem)
+    lean, lean_limits, bounded = candidates.lean, rules.lean, rules.bounded
+    if one_branch:
+        lean = lean + BRANCH_APART * candidates.branches[nodes.candidate[:, 2]]
+        within = ~np.isnan(gap_times(problem))
+        lean_limits = np.where(within, np.minimum(lean_limits, BRANCH_APART / 2.0), np.inf)
+        bounded = True
     cost = node_terms(
         problem,
         nodes.candidate[:, 0].astype(np.int64),
@@ -98,12 +116,18 @@ def layered_graph(candidates: CandidateSet) -> LayeredGraph:
         ranges=problem.robot.cost_ranges,
         node_cost=cost,
         gap_weight=rules.weight,
-        steps=nodes.pendant if rules.bounded else None,
-        step_limits=rules.steps if rules.bounded else None,
-        lean=candidates.lean if rules.bounded else None,
-        lean_limits=rules.lean if rules.bounded else None,
+        steps=nodes.pendant if bounded else None,
+        step_limits=rules.steps if bounded else None,
+        lean=lean if bounded else None,
+        lean_limits=lean_limits if bounded else None,
         squared=problem.settings.edge_cost is EdgeCost.SQUARED,
     )
+
+
+def changes_branch(sequence: Sequence, problem: PlanningProblem) -> bool:
+    """Whether the posture's branch changes within a pass."""
+    within = ~np.isnan(gap_times(problem))
+    return bool((within & (np.diff(sequence.branch) != 0)).any())
 
 
 def exact_sequence(

@@ -1,260 +1,296 @@
-"""From a planned sequence to a written program, and from a program back to its checks."""
+"""From a planned sequence to a written program that was read back and checked."""
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass
-from itertools import islice
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from solver.analysis.motion_check import check_motion
-from solver.analysis.program_check import Check, check_positions
-from solver.analysis.result import PlanningResult, Sequence
-from solver.costs.steps import gap_times
+from solver.analysis.check import Check, down_mm
+from solver.analysis.result import PlanningResult
 from solver.errors import InputError, RefusedError
-from solver.io.ls_program import ProgramFile
-from solver.io.posts.fanuc_joint import render_fanuc_joint
-from solver.io.verified_program import differences, write_verified
+from solver.io.ls_hash import HASH_REMARK, content_hash
+from solver.io.ls_program_set import program_set
+from solver.io.ls_reader import read_program
+from solver.io.posts import Post, PostOptions, post_named
+from solver.io.posts.post import FileForm
+from solver.io.verified_program import Found, write_verified
 from solver.model.problem import PlanningProblem
-from solver.model.program import JointProgram, Move, rounded_joints
-from solver.model.toolpath import Event
-from solver.pipeline.digest import problem_digest
-from solver.pipeline.flow_check import check_flow
-from solver.transforms import FloatArray
+from solver.model.program import JointProgram, Move, Speed, rounded_joints
+from solver.model.program_settings import ContactMotion
+from solver.motion.links import linked_moves
+from solver.pipeline.program_building import contact_moves, program_with
+from solver.pipeline.program_check import ProgramReport, inspect_moves, inspect_program
+from solver.pipeline.remarks import NO_HASH
+from solver.pipeline.simplify import simplified
+from solver.progress import Monitor
 from solver.units import MM, MM_PER_M
 
-CELL_REMARK = "CELL "
-BEAM_REMARK = "BEAM "
-ACCEPTED_REMARK = "ACCEPTED CLEARANCE "
-DIGEST_REMARK = "DIGEST "
+OVERRIDDEN = "_OVR"
+"""Ends the name of a program that was written although a check failed."""
+
+LEAST_REASON = 10
+"""Fewest characters of a reason for an override."""
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramOrder:
+    """How a program is to be written.
+
+    Attributes
+    ----------
+    accepted_clearance : float or None
+        Least clearance that a person accepts where the safety distance cannot be met [m].
+    post : str or None
+        Name of the post-processor; the cell's own where left out.
+    simplify : float or None
+        How far the moved TCP may leave the path where positions are dropped [m].
+    override : str or None
+        The reason for which a program is written although checks fail.
+    """
+
+    accepted_clearance: float | None = None
+    post: str | None = None
+    simplify: float | None = None
+    override: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class WrittenProgram:
-    """A program that was written and read back: where, and the checks it passed."""
+    """A program that was written and read back: its files, main first, and its checks.
 
-    path: Path
-    checks: tuple[Check, ...]
-
-
-def build_program(
-    result: PlanningResult,
-    name: str | None = None,
-    sequence: Sequence | None = None,
-    accepted_clearance: float | None = None,
-) -> JointProgram:
-    """The joint program of a sequence (the result's own by default).
-
-    Moves within a pass last as long as their distance takes at the feed; the first move of
-    each pass goes at the cell's approach speed and ends FINE.
+    `override` is the reason for which failed checks were passed over, None where all passed;
+    `stale` are parts of an earlier program of this name that nothing calls any more.
     """
-    joints = rounded_joints((sequence or result.sequence).pendant)
-    title = name or result.problem.program.name
-    return program_of(result.problem, joints, title, accepted_clearance)
+
+    paths: tuple[Path, ...]
+    program: JointProgram
+    report: ProgramReport
+    override: str | None = None
+    stale: tuple[Path, ...] = ()
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """All checks of what was read back."""
+        return self.report.checks
+
+    @property
+    def path(self) -> Path:
+        """The main file."""
+        return self.paths[0]
 
 
-def program_of(
-    problem: PlanningProblem, joints: FloatArray, name: str, accepted: float | None = None
-) -> JointProgram:
-    """The program that a problem asks for, through pendant joints (n, 6) [rad], rounded already."""
-    times = gap_times(problem)
-    events = _events(problem)
-    last = len(joints) - 1
-    moves = []
-    for index, row in enumerate(joints):
-        arriving = np.nan if index == 0 else float(times[index - 1])
-        leaving = np.nan if index == last else float(times[index])
-        fine = np.isnan(arriving) or np.isnan(leaving)
-        moves.append(
-            Move(
-                joints=row,
-                percent=problem.program.approach_percent if np.isnan(arriving) else None,
-                duration=None if np.isnan(arriving) else arriving,
-                # What happens at a waypoint happens there, not while its corner is being cut.
-                cnt=None if fine or index in events else 100,
-                waypoint=index,
-                events=events.get(index, ()),
-            )
-        )
-    return _program(problem, name, tuple(moves), accepted)
+@dataclass(frozen=True, slots=True)
+class ProgramDraft:
+    """A program as it would be written: its files as (name, text), main first, and its checks."""
+
+    program: JointProgram
+    files: tuple[tuple[str, str], ...]
+    report: ProgramReport
 
 
-def _program(
-    problem: PlanningProblem, name: str, moves: tuple[Move, ...], accepted: float | None
-) -> JointProgram:
-    settings = problem.program
-    return JointProgram(
-        name=name.upper(),
-        comment=settings.comment,
-        remarks=_remarks(problem, accepted),
-        uframe=settings.uframe,
-        utool=settings.utool,
-        moves=moves,
-        date=settings.date,
-        time=settings.time,
-    )
-
-
-def _events(problem: PlanningProblem) -> dict[int, tuple[Event, ...]]:
-    events: dict[int, tuple[Event, ...]] = {}
-    first = 0
-    for one in problem.toolpath.passes:
-        events |= {first + index: what for index, what in one.events.items()}
-        first += len(one)
-    return events
-
-
-def _remarks(problem: PlanningProblem, accepted: float | None) -> tuple[str, ...]:
-    section = problem.workpiece.section
-    lines = [f"{CELL_REMARK}{problem.name}"]
-    if section is not None:
-        lines.append(f"{BEAM_REMARK}{section.name}")
-    lines.append(f"{DIGEST_REMARK}{problem_digest(problem)}")
-    if accepted is not None:
-        lines.append(f"{ACCEPTED_REMARK}{accepted * MM_PER_M:.3f} MM")
-    return (*lines, "checked on the nominal model", "verify in T1")
+def draft_program(
+    result: PlanningResult,
+    order: ProgramOrder | None = None,
+    name: str | None = None,
+    monitor: Monitor | None = None,
+) -> ProgramDraft:
+    """Make and check a program without writing it; see `write_program`."""
+    order = order or ProgramOrder()
+    problem = result.problem
+    accepted, required = _required(result, order, refuse=False)
+    post = post_named(order.post or problem.program.post)
+    title = (name or problem.program.name).upper()
+    program = ordered_program(result, title, order, accepted, monitor)
+    options = PostOptions.of(problem.program)
+    program = with_hash(program, post, options, problem)
+    report = _inspected(problem, program, post, options, required, monitor)
+    rendered = post.render(program, options, problem.robot)
+    return ProgramDraft(program, tuple((one.name, one.text) for one in rendered), report)
 
 
 def write_program(
-    result: PlanningResult, path: Path, accepted_clearance: float | None = None
+    result: PlanningResult,
+    path: Path,
+    order: ProgramOrder | None = None,
+    monitor: Monitor | None = None,
 ) -> WrittenProgram:
     """Write the result's program, read it back and check it; nothing is left when a check fails.
 
-    `accepted_clearance` [m] is the least clearance that a person accepts where the safety
-    distance cannot be met; it is stamped into the program.
+    Raises
+    ------
+    RefusedError
+        When a check fails and no override was given, or when links cannot be planned.
+    InputError
+        When the order or the file's name cannot be used.
     """
+    order = order or ProgramOrder()
+    if order.override is not None:
+        order = replace(order, override=order.override.strip())
     problem = result.problem
-    required = problem.settings.safety_distance
+    check_order(problem, path, order)
+    accepted, required = _required(result, order)
+    post = post_named(order.post or problem.program.post)
+    program = ordered_program(result, path.stem.upper(), order, accepted, monitor)
+    options = PostOptions.of(problem.program)
+    report = _inspected(problem, program, post, options, required, monitor)
+    override = order.override if report.failed else None
+    if report.failed and override is None:
+        raise _refusal(report)
+    if override is not None:
+        path = path.with_stem(path.stem + OVERRIDDEN)
+        program = program_with(
+            problem, path.stem.upper(), program.moves, result.sequence.least_clearance,
+            accepted=accepted, override=override,
+        )  # fmt: skip
+    program = with_hash(program, post, options, problem)
+    reports = [report]
+
+    def verify(found: Found) -> None:
+        if isinstance(found, JointProgram):
+            reports.append(inspect_moves(problem, found, required, (), monitor))
+        else:
+            reports.append(inspect_program(problem, program_set(found), required, monitor))
+        if reports[-1].failed and override is None:
+            raise _refusal(reports[-1])
+
+    written = write_verified(program, path, verify, options, post, problem.robot)
+    return WrittenProgram(written.paths, program, reports[-1], override, written.stale)
+
+
+def _refusal(report: ProgramReport) -> RefusedError:
+    lines = "; ".join(str(check) for check in report.failed)
+    return RefusedError(f"no program was written, since a check failed: {lines}")
+
+
+def ordered_program(
+    result: PlanningResult,
+    name: str,
+    order: ProgramOrder,
+    accepted: float | None = None,
+    monitor: Monitor | None = None,
+) -> JointProgram:
+    """The neutral program of the result's sequence, simplified and linked as ordered."""
+    problem = _with_motion(result.problem, order)
     least = result.sequence.least_clearance
-    if accepted_clearance is not None and accepted_clearance < required and least < required:
-        # As it will be stamped, so that what is checked now is what is checked later.
-        accepted_clearance = round(accepted_clearance * MM_PER_M, 3) * MM
-        if accepted_clearance <= 0.0:
+    passes = contact_moves(problem, rounded_joints(result.sequence.pendant))
+    if order.simplify is not None:
+        kept = min(least, problem.settings.safety_distance)
+        passes = simplified(problem, passes, order.simplify, kept, monitor)
+    moves = linked(problem, passes, monitor)
+    return program_with(problem, name, moves, least, accepted=accepted)
+
+
+def _with_motion(problem: PlanningProblem, order: ProgramOrder) -> PlanningProblem:
+    """The problem with the contact motion that the post needs: Cartesian ones are linear."""
+    post = post_named(order.post or problem.program.post)
+    if post.form is not FileForm.FANUC_CARTESIAN:
+        return problem
+    return replace(problem, program=replace(problem.program, contact=ContactMotion.LINEAR))
+
+
+def linked(
+    problem: PlanningProblem,
+    passes: tuple[tuple[Move, ...], ...],
+    monitor: Monitor | None = None,
+) -> tuple[Move, ...]:
+    """The moves of all passes in one row, with links where the cell has them."""
+    if problem.program.links is None:
+        return tuple(move for one in passes for move in one)
+    return linked_moves(problem, passes, monitor)
+
+
+def with_hash(
+    program: JointProgram, post: Post, options: PostOptions, problem: PlanningProblem
+) -> JointProgram:
+    """The program with the hash of its own content among its remarks, if robots run the post."""
+    if post.suffix != ".LS":
+        remarks = tuple(one for one in program.remarks if not one.startswith(HASH_REMARK))
+        return replace(program, remarks=remarks)
+    rendered = post.render(program, options, problem.robot)
+    content = content_hash(read_program(one.text, one.name) for one in rendered)
+    remarks = tuple(one.replace(NO_HASH, content) for one in program.remarks)
+    return replace(program, remarks=remarks)
+
+
+def _inspected(
+    problem: PlanningProblem,
+    program: JointProgram,
+    post: Post,
+    options: PostOptions,
+    required: float,
+    monitor: Monitor | None,
+) -> ProgramReport:
+    """Checks before anything is written: of the rendered text where the robot runs that."""
+    if post.suffix != ".LS":
+        return inspect_moves(problem, program, required, (), monitor)
+    rendered = post.render(with_hash(program, post, options, problem), options, problem.robot)
+    files = tuple(read_program(one.text, one.name) for one in rendered)
+    return inspect_program(problem, program_set(files), required, monitor)
+
+
+def _required(
+    result: PlanningResult, order: ProgramOrder, *, refuse: bool = True
+) -> tuple[float | None, float]:
+    """The accepted clearance as it will be stamped, and what is required [m]."""
+    required = result.problem.settings.safety_distance
+    least = result.sequence.least_clearance
+    accepted = order.accepted_clearance
+    if accepted is not None and accepted < required and least < required:
+        accepted = round(accepted * MM_PER_M, 3) * MM
+        if accepted <= 0.0:
             raise InputError("an accepted clearance must be at least 0.001 mm")
-        required = accepted_clearance
+        required = accepted
     else:
-        accepted_clearance = None
-    if least < required:
+        accepted = None
+    if refuse and least < required and order.override is None:
         raise RefusedError(
-            f"no program was written: the best sequence keeps only {_down(least)} mm of the "
+            f"no program was written: the best sequence keeps only {down_mm(least):.1f} mm of the "
             f"{required * MM_PER_M:g} mm asked; change the cell, or accept less with "
-            f"--accept-clearance {_down(least)}"
+            f"--accept-clearance {down_mm(least):.1f}"
         )
-    program = build_program(result, path.stem, accepted_clearance=accepted_clearance)
-    checks: list[Check] = []
-
-    def verify(written: ProgramFile) -> None:
-        checks.extend(check_program(problem, written, required_clearance(problem, written)))
-        failed = [check for check in checks if not check.passed]
-        if failed:
-            lines = "; ".join(str(check) for check in failed)
-            raise RefusedError(f"no program was written, since a check failed: {lines}")
-
-    write_verified(program, path, verify)
-    return WrittenProgram(path, tuple(checks))
+    return accepted, required
 
 
-def _down(clearance: float) -> str:
-    """A clearance in mm, rounded down to 0.1 mm."""
-    return f"{np.floor(clearance * MM_PER_M * 10.0) / 10.0:.1f}"
-
-
-def check_program_settings(problem: PlanningProblem, path: Path) -> None:
+def check_order(problem: PlanningProblem, path: Path, order: ProgramOrder) -> None:
     """Refuse, before anything is planned, what no program could be written with.
 
-    The file's name, the frame and tool numbers, the comment and the remarks are rendered with
-    a single position.
+    The file's name, the frame and tool numbers, the comment, the remarks and the reason of an
+    override are rendered with a single position.
     """
-    if path.suffix.upper() != ".LS":
-        raise InputError(f"{path}: a FANUC program file ends in .LS")
+    post = post_named(order.post or problem.program.post)
+    if path.suffix.upper() != post.suffix.upper():
+        raise InputError(f"{path}: a file of {post.title} ends in {post.suffix}")
     if not path.absolute().parent.is_dir():
         raise InputError(f"{path}: there is no folder {path.parent}")
-    if path.exists() and not path.is_file():
-        raise InputError(f"{path}: it exists and is no regular file")
-    home = Move(joints=np.zeros(6), percent=problem.program.approach_percent)
-    render_fanuc_joint(_program(problem, path.stem, (home,), None))
-
-
-def required_clearance(problem: PlanningProblem, written: ProgramFile) -> float:
-    """What the program has to keep [m]: the safety distance, or less where it says so."""
-    accepted = accepted_clearance(problem, written)
-    return problem.settings.safety_distance if accepted is None else accepted
-
-
-def accepted_clearance(problem: PlanningProblem, written: ProgramFile) -> float | None:
-    """The clearance below the safety distance that a program's remark accepts [m], or None."""
-    for remark in written.remarks:
-        if remark.startswith(ACCEPTED_REMARK):
-            text = remark.removeprefix(ACCEPTED_REMARK).removesuffix("MM").strip()
-            if not re.fullmatch(r"[0-9]{1,4}[.][0-9]{3}", text) or float(text) <= 0.0:
-                raise InputError(f"{written.file}: remark {remark!r} names no clearance above 0")
-            return min(float(text) * MM, problem.settings.safety_distance)
-    return None
-
-
-def check_program(
-    problem: PlanningProblem, written: ProgramFile, least_clearance: float
-) -> tuple[Check, ...]:
-    """All checks of a program that was read from a file."""
-    frames = {(one.first.uframe, one.first.utool) for one in written.positions.values()}
-    frames |= {(move.uframe, move.utool) for move in written.moves}
-    wanted = (problem.program.uframe, problem.program.utool)
-    wrong = len(frames - {wanted})
-    numbers = Check(
-        "frame and tool numbers", wrong == 0, wrong, 0, "other", f"UF {wanted[0]}, UT {wanted[1]}"
+    targets = (
+        [path, path.with_stem(path.stem + OVERRIDDEN)] if order.override is not None else [path]
     )
-    flow = check_flow(written)
-    named = Path(written.file).stem.upper() == written.name
-    name = Check(
-        "program name", named, int(not named), 0, "differing", f"{written.name} in {written.file}"
-    )
-    head = (name, flow, numbers, *_digest_check(problem, written))
-    if not flow.passed:
-        return head
-    joints = written.path_joints()
-    positions = check_positions(problem, joints, least_clearance)
-    if len(joints) != len(problem.toolpath):
-        return (*head, *positions)
-    text = _text_check(problem, written, joints)
-    return (*head, text, *positions, *check_motion(problem, joints, _durations(written)))
+    for one in targets:
+        if one.exists() and not one.is_file():
+            raise InputError(f"{one}: it exists and is no regular file")
+    limit = problem.program.path_tolerance
+    if order.simplify is not None and not 0.0 < order.simplify <= limit:
+        raise InputError(
+            f"a tolerance for simplifying lies above 0 and up to the cell's path_tolerance_mm, "
+            f"{limit * MM_PER_M:g} mm; got {order.simplify * MM_PER_M:g} mm"
+        )
+    reason = order.override.strip() if order.override is not None else None
+    if reason is not None and len(reason) < LEAST_REASON:
+        raise InputError(
+            f"an override needs a reason of at least {LEAST_REASON} characters, got {reason!r}"
+        )
+    options = PostOptions.of(problem.program)
+    for one in targets:
+        speed = Speed.percent(problem.program.approach_percent)
+        home = Move(joints=_probe(problem), speed=speed)
+        program = program_with(problem, one.stem.upper(), (home,), 0.0, override=reason)
+        post.render(program, options, problem.robot)
 
 
-def _text_check(problem: PlanningProblem, written: ProgramFile, joints: FloatArray) -> Check:
-    """Whether all but the joints is what posopt writes for this problem.
-
-    Speeds, terminations, events, groups, axes, marks and remarks: whatever else stands in the
-    file could move the robot otherwise than checked.
-    """
-    accepted = accepted_clearance(problem, written)
-    expected = program_of(problem, rounded_joints(joints), written.name, accepted)
-    found = list(islice(differences(expected, written), 100))
-    detail = found[0] if found else "speeds, events, groups and remarks as the cell asks"
-    if accepted is not None:
-        detail += f"; ACCEPTED CLEARANCE {accepted * MM_PER_M:.3f} MM"
-    return Check("program text", not found, len(found), 0, "differences", detail)
-
-
-def _digest_check(problem: PlanningProblem, written: ProgramFile) -> tuple[Check, ...]:
-    """Whether the program was written for this very cell, where it says for which one."""
-    expected = problem_digest(problem)
-    stated = [
-        remark.removeprefix(DIGEST_REMARK).strip()
-        for remark in written.remarks
-        if remark.startswith(DIGEST_REMARK)
-    ]
-    other = sum(one != expected for one in stated)
-    detail = f"written for {', '.join(stated)}, this cell is {expected}"
-    return (Check("cell digest", not other, other, 0, "differing", detail),) if stated else ()
-
-
-def _durations(written: ProgramFile) -> FloatArray:
-    """(n,) time of each move [s], nan where the program gives a share of the speed."""
-    factors = {"msec": 1e-3, "sec": 1.0}
-    times = []
-    for move in written.moves:
-        known = move.speed.unit in factors and move.speed.value is not None
-        seconds = float(move.speed.value or 0.0) * factors.get(move.speed.unit, np.nan)
-        times += [seconds if known else np.nan] * len(move.positions)
-    return np.array(times)
+def _probe(problem: PlanningProblem) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """A bent posture with every joint inside its limits, away from singularities."""
+    limits = problem.robot.limits
+    share = np.array([0.55, 0.45, 0.45, 0.55, 0.3, 0.55])
+    return rounded_joints(limits[:, 0] + share * (limits[:, 1] - limits[:, 0]))

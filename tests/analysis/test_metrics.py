@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from solver.analysis.check import down_mm
 from solver.analysis.metrics import joint_motion, lean_edge_share, mean_motion
-from solver.analysis.report import rounded_down
 
 sequences = arrays(np.float64, (7, 6), elements=st.floats(-3.0, 3.0))
 
@@ -49,6 +49,6 @@ def test_share_at_the_edge_counts_both_ends_and_ignores_a_fixed_lean():
 
 @given(st.floats(0.0, 1.0))
 def test_a_shown_clearance_is_never_more_than_the_clearance(clearance):
-    shown = rounded_down(clearance)
+    shown = down_mm(clearance)
     assert shown <= clearance * 1000.0
     assert clearance * 1000.0 - shown < 0.1 + 1e-9

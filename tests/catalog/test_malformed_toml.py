@@ -25,6 +25,7 @@ OPTIONAL = re.compile(
     r"assumptions|sources\..*|inflation\..*|.*\.group|.*wpr_deg|.*margin_mm|.*depth_mm|.*\.role"
     r"|.*later_root_mm|.*root_mm|cell\.floor|beam\.(fillets|frame)|path\.(feed_mm_s|touches)"
     r"|path\.line\.name|path\.(frame|orientation_wpr_deg|orientation_frame)|settings\..*|program\..*"
+    r"|limits\.acceleration_deg_s2"
 )
 
 

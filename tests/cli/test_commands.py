@@ -126,7 +126,7 @@ def test_a_changed_position_is_caught(here, capsys):
     code, found = document(capsys, "check", "G.LS", "--json")
     assert code == 4
     failed = {one["name"]: one for one in found["checks"] if not one["passed"]}
-    assert failed["path position"]["waypoint"] == 20
+    assert failed["path position"]["waypoint"] == 17
 
 
 def test_a_cell_is_never_assumed(here, capsys):

@@ -270,16 +270,22 @@ def test_every_representative_of_a_feasible_candidate_is_a_node(cell):
 
 @pytest.fixture(scope="module")
 def written_joints(tmp_path_factory):
-    """Joints [rad] in the order of the moves of the program that `posopt plan` writes."""
+    """Joints [rad] of the program that `posopt plan` writes, from its first timed move's start on.
+
+    What is timed in msec follows the path; the position before those moves begins it.
+    """
     file = tmp_path_factory.mktemp("program") / "GROOVE.LS"
     assert main(["plan", "groove_hw300", "--out", str(file)]) == 0
     program, table = file.read_text("ascii").split("/POS")
-    order = [int(number) for number in re.findall(r"^ *\d+:J P\[(\d+)\]", program, re.MULTILINE)]
+    moves = re.findall(r"^ *\d+:[JL] P\[(\d+)\] (\S+)", program, re.MULTILINE)
+    order = [int(number) for number, _ in moves]
+    timed = [row for row, (_, speed) in enumerate(moves) if speed.endswith("msec")]
+    assert timed == list(range(timed[0], timed[-1] + 1))
     value = r"J\d= *(-?\d*\.\d{3}) deg[\s,]*"
-    found = re.findall(rf"P\[(\d+)\]\{{\s+GP1:\s+UF : 0, UT : 1,\s+{value * 6}\}};", table)
+    found = re.findall(rf"P\[(\d+)\]\{{\s+GP1:\s+UF : 1, UT : 1,\s+{value * 6}\}};", table)
     positions = {int(number): np.array(joints, float) * DEG for number, *joints in found}
     assert len(positions) == len(found) == len(order)
-    return [positions[number] for number in order]
+    return [positions[number] for number in order[timed[0] - 1 : timed[-1] + 1]]
 
 
 def path_of_the_example():

@@ -52,6 +52,7 @@ def _robot(
         model_from_pendant=FANUC_MODEL_FROM_PENDANT,
         limits=np.radians(limits),
         speeds=np.radians([195, 175, 180, 360, 360, 550]),
+        accelerations=np.radians([650, 583, 600, 1200, 1200, 1833]),
         elbow_limits=np.radians(elbow),
         cost_ranges=np.radians(np.diff(limits, axis=1)[:, 0]),
         payload=20.0,

@@ -1,363 +1,323 @@
-"""A fault put into a written program, or a changed cell, is caught under its own name."""
+"""A fault put into the text of a written program with joint positions is caught under its name."""
 
 import re
-from dataclasses import replace
-from pathlib import Path
 
-import numpy as np
 import pytest
-
-from solver.catalog import load_cell
-from solver.io.ls_reader import read_program
-from solver.model.toolpath import Event, EventKind
-from solver.pipeline.planning import plan
-from solver.pipeline.programming import build_program, check_program, write_program
-from solver.transforms import rigid
-from solver.units import MM
-
-POSITION = re.compile(r"(P\[(\d+)\]\{\r\n   GP1:\r\n\tUF : 0, UT : 1,\t\r\n)(.*?)(\r\n\};)", re.S)
-JOINT = re.compile(r"J(\d)=(.{10}) deg")
-
-
-@pytest.fixture(scope="module")
-def written(tmp_path_factory):
-    result = plan(load_cell("groove_hw300"))
-    path = tmp_path_factory.mktemp("program") / "GROOVE.LS"
-    write_program(result, path)
-    return result, path.read_bytes().decode("ascii")
-
-
-def failed(problem, text, file="GROOVE.LS", least=50.0 * MM, digest=False):
-    """Names of the failed checks, without those that notice any change at all."""
-    checks = check_program(problem, read_program(text, file), least)
-    return {
-        check.name
-        for check in checks
-        if not check.passed and (digest or check.name not in {"cell digest", "program text"})
-    }
-
-
-def change_joints(text, number, change):
-    """Apply `change` to the six joints [deg] of one position."""
-
-    def rewrite(match):
-        if int(match[2]) != number:
-            return match[0]
-        joints = [float(value) for _, value in JOINT.findall(match[3])]
-        changed = iter(change(joints))
-        body = JOINT.sub(lambda one: f"J{one[1]}={next(changed):10.3f} deg", match[3])
-        return match[1] + body + match[4]
-
-    return POSITION.sub(rewrite, text)
-
-
-def test_the_written_program_passes(written):
-    result, text = written
-    assert failed(result.problem, text, digest=True) == set()
-
-
-@pytest.mark.parametrize("joint", range(6))
-def test_a_joint_off_by_a_fiftieth_of_a_degree_leaves_the_path(written, joint):
-    result, text = written
-
-    def off(joints):
-        return [value + 0.02 * (index == joint) for index, value in enumerate(joints)]
-
-    assert failed(result.problem, change_joints(text, 7, off)) & {
-        "path position",
-        "spin range",
-        "lead range",
-    }
-
-
-def test_coupling_left_out_leaves_the_path(written):
-    result, text = written
-    for number in range(1, 51):
-        text = change_joints(text, number, lambda j: [j[0], j[1], j[2] + j[1], *j[3:]])
-    assert "path position" in failed(result.problem, text)
-
-
-def test_swapped_positions_leave_the_path(written):
-    result, text = written
-    swapped = text.replace("J P[10] ", "J P[99] ").replace("J P[30] ", "J P[10] ")
-    assert "path position" in failed(result.problem, swapped.replace("J P[99] ", "J P[30] "))
-
-
-def test_a_lost_position_is_counted(written):
-    result, text = written
-    lines = text.split("\r\n")
-    kept = [line for line in lines if "J P[50] " not in line]
-    assert "position count" in failed(result.problem, "\r\n".join(kept))
-
-
-def test_a_moved_beam_is_noticed(written):
-    result, text = written
-    problem = result.problem
-    moved = rigid(position=(0.0, 0.0, 0.005)) @ problem.workpiece.placement
-    workpiece = replace(problem.workpiece, placement=moved)
-    assert "path position" in failed(replace(problem, workpiece=workpiece), text)
-
-
-def test_a_longer_tool_is_noticed(written):
-    result, text = written
-    tool = result.problem.tool
-    longer = replace(tool, tcp=tool.tcp @ rigid(position=(0.0, 0.0, 0.001)))
-    assert "path position" in failed(replace(result.problem, tool=longer), text)
-
-
-def test_another_frame_or_tool_number_is_noticed(written):
-    result, text = written
-    assert "frame and tool numbers" in failed(result.problem, text.replace("UT : 1", "UT : 2"))
-    other = text.replace("UTOOL_NUM=1", "UTOOL_NUM=2")
-    assert "program flow" in failed(result.problem, other)
-
-
-def test_a_renamed_program_is_noticed(written):
-    result, text = written
-    assert failed(result.problem, text, "OTHER.LS") == {"program name"}
-
-
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("J P[20] ", "L P[20] "),
-        ("!verify in T1", "JMP LBL[1]"),
-        ("!verify in T1", "R[1]=5"),
-    ],
+from written_programs import (
+    ANY_CHANGE,
+    checks_of,
+    edited,
+    failed,
+    file_of,
+    joint_off,
+    line_to,
+    planned,
+    position,
+    with_joints,
+    with_line,
+    with_speed,
+    without_line,
+    without_move,
+    written,
 )
-def test_what_the_checks_cannot_follow_fails(written, old, new):
-    result, text = written
-    if new.startswith("L"):
-        line = next(line for line in text.split("\r\n") if "J P[20] " in line)
-        text = text.replace(line, re.sub(r"J P\[20\] \S+", "L P[20] 20mm/sec", line))
-    else:
-        text = text.replace(old, new)
-    assert failed(result.problem, text) == {"program flow"}
+
+from solver.errors import InputError
+from solver.io.ls_hash import content_hash, stated_hash
+from solver.io.ls_reader import read_program
+from solver.pipeline.remarks import required_clearance
+
+GROOVE, ZIGZAG = "groove_hw300", "zigzag_hw250"
+
+# P[1] of groove is home, P[2] the approach, P[3] the lead-in, P[4] to P[53] the waypoints.
+# Of zigzag P[4] to P[28], P[33] to P[57] and P[62] to P[86] are waypoints; between the first two
+# passes P[29] is the lead-out, P[30] the retract, P[31] the approach and P[32] the lead-in.
 
 
-def test_a_motion_option_fails(written):
-    result, text = written
-    line = next(line for line in text.split("\r\n") if "J P[20] " in line)
-    changed = line.replace("CNT100", "CNT100 Offset,PR[1]")
-    assert failed(result.problem, text.replace(line, changed)) == {"program flow"}
+def without(*numbers):
+    def change(text):
+        for number in numbers:
+            text = without_move(text, number)
+        return text
+
+    return change
 
 
-def test_less_clearance_than_asked_fails(written):
-    result, text = written
-    assert failed(result.problem, text, least=50.5 * MM) == {"clearance"}
+def behind(number, *lines):
+    """Adds lines behind the one that moves to a position."""
+    added = "".join(f"   1:  {line} ;\r\n" for line in lines)
+    return lambda text: with_line(text, number, lambda line: line + added)
 
 
-def test_a_narrower_joint_window_fails(written):
-    result, text = written
-    windows = result.problem.robot.limits.copy()
-    windows[1, 1] = result.sequence.pendant[:, 1].max() - 0.01
-    assert failed(replace(result.problem, joint_windows=windows), text) == {"joint limits"}
+def coupling_left_out(text):
+    for number in range(1, text.count("\nP[") + 1):
+        text = with_joints(text, number, lambda j: [j[0], j[1], j[2] + j[1], *j[3:]])
+    return text
 
 
-def test_a_fixture_in_the_way_fails(written):
-    result, text = written
-    fixture = replace(result.problem.fixtures[-1], pose=result.problem.workpiece.placement)
-    problem = replace(result.problem, fixtures=(*result.problem.fixtures, fixture))
-    assert "clearance" in failed(problem, text)
+def swapped(one, other):
+    def change(text):
+        text = with_line(text, one, lambda line: line.replace(f"P[{one}]", "P[999]"))
+        text = with_line(text, other, lambda line: line.replace(f"P[{other}]", f"P[{one}]"))
+        return text.replace("P[999]", f"P[{other}]")
+
+    return change
 
 
-def test_nothing_is_written_when_a_check_fails_after_reading_back(written, tmp_path, monkeypatch):
-    from solver.analysis.program_check import Check
-    from solver.errors import RefusedError
-    from solver.pipeline import programming
+def in_position(number, old, new):
+    def change(text):
+        entry = position(text, number)
+        return edited(text, entry, re.sub(old, new, entry, count=1))
 
-    result, _ = written
-    broken = Check("clearance", False, 49.9, 50.0, "mm")
-    monkeypatch.setattr(programming, "check_program", lambda *_: (broken,))
-    with pytest.raises(RefusedError, match="clearance"):
-        write_program(result, tmp_path / "X.LS")
-    assert not list(tmp_path.iterdir())
+    return change
 
 
-def test_a_move_with_an_event_ends_fine(written):
-    result, _ = written
-    problem = result.problem
-    one = problem.toolpath.passes[0]
-    event = Event(EventKind.DWELL, value=0.5)
-    toolpath = problem.toolpath.with_passes((replace(one, events={20: (event,)}),))
-    program = build_program(replace(result, problem=replace(problem, toolpath=toolpath)))
-    assert program.moves[20].cnt is None
-    assert program.moves[20].events == (event,)
-    assert program.moves[19].cnt == 100
+def in_line(number, old, new):
+    return lambda text: with_line(text, number, lambda line: line.replace(old, new))
 
 
-def test_moves_take_the_time_of_their_distance_at_the_feed(written):
-    result, _ = written
-    program = build_program(result)
-    positions = result.problem.toolpath.poses[:, :3, 3]
-    distance = np.linalg.norm(np.diff(positions, axis=0), axis=1)
-    durations = [move.duration for move in program.moves[1:]]
-    assert np.allclose(durations, distance / result.problem.toolpath.passes[0].feed)
-    assert program.moves[0].percent == result.problem.program.approach_percent
+def retract_and_lead_out_left_out(text):
+    """The spindle still stops between the passes, but above the next one."""
+    text = edited(without(29, 30)(text), "CALL SPINDLE_OFF    ;", "! ;")
+    return behind(31, "CALL SPINDLE_OFF")(text)
 
 
-def test_the_program_says_where_it_comes_from(written):
-    _, text = written
-    assert "!CELL groove_hw300 ;" in text
-    assert "!BEAM HW300 ;" in text
-    assert not re.search(r"\b20[2-9]\d-", text)
-    assert Path("GROOVE.LS").stem in text.splitlines()[0]
+def sixth_joint_turned(joints):
+    return [*joints[:5], joints[5] - (360.0 if joints[5] > 0.0 else -360.0)]
 
 
-def test_self_pairs_that_a_cell_leaves_out_are_called_not_checked(written):
-    result, text = written
-    settings = replace(result.problem.settings, self_margin=None)
-    checks = check_program(
-        replace(result.problem, settings=settings), read_program(text, "GROOVE.LS"), 50.0 * MM
-    )
-    one = next(check for check in checks if check.name == "robot against itself")
-    assert "NOT CHECKED" in one.detail
+def text(old, new):
+    return lambda whole: edited(whole, old, new)
 
 
-def test_a_cell_that_changed_since_is_noticed(written):
-    """A copy of a cell under the same name is not the cell that was planned."""
-    result, text = written
-    narrower = replace(result.problem.settings, safety_distance=20.0 * MM)
-    changed = replace(result.problem, settings=narrower)
-    names = failed(changed, text, least=20.0 * MM, digest=True)
-    assert names == {"cell digest", "program text"}
+def second(old, new):
+    def change(whole):
+        first, rest = whole.split(old, 1)
+        return first + old + edited(rest, old, new)
+
+    return change
 
 
-def test_a_full_turn_of_a_joint_between_positions_is_noticed(written):
-    result, text = written
-    turned = change_joints(text, 25, lambda j: [*j[:5], j[5] - 360.0 * (1 if j[5] > 0 else -1)])
-    assert "joint speed" in failed(result.problem, turned)
+FAULTS = {
+    "coupling left out": (GROOVE, coupling_left_out, "path position"),
+    "coupling left out in all passes": (ZIGZAG, coupling_left_out, "path position"),
+    **{
+        f"J{joint} 0.1 deg off": (
+            GROOVE,
+            lambda whole, joint=joint: with_joints(whole, 20, joint_off(joint, 0.1)),
+            "spin range" if joint == 6 else "path position",
+        )
+        for joint in range(1, 7)
+    },
+    **{
+        f"J{joint} 0.01 deg off": (
+            GROOVE,
+            lambda whole, joint=joint: with_joints(whole, 20, joint_off(joint, 0.01)),
+            "path position",
+        )
+        for joint in range(1, 6)
+    },
+    "swapped positions": (GROOVE, swapped(10, 30), "path position"),
+    "swapped neighbours": (GROOVE, swapped(10, 11), "path between positions (sampled)"),
+    "positions of two passes swapped": (ZIGZAG, swapped(10, 40), "path position"),
+    "another tool": (GROOVE, text("UTOOL_NUM=1", "UTOOL_NUM=2"), "frame and tool numbers"),
+    "another frame": (GROOVE, text("UFRAME_NUM=1", "UFRAME_NUM=2"), "frame and tool numbers"),
+    "the world's frame": (GROOVE, text("UFRAME_NUM=1", "UFRAME_NUM=0"), "frame and tool numbers"),
+    "no tool selected": (GROOVE, text("UTOOL_NUM=1", "!no tool"), "frame and tool numbers"),
+    "taught in another frame": (
+        GROOVE, in_position(20, "UF : 1", "UF : 2"), "frame and tool numbers",
+    ),
+    "taught with another tool": (
+        GROOVE, in_position(20, "UT : 1", "UT : 2"), "frame and tool numbers",
+    ),
+    "renamed program": (GROOVE, text("/PROG  GROOVE", "/PROG  GROOVY"), "program name"),
+    "percent while grinding": (GROOVE, lambda t: with_speed(t, 20, "1%"), "feed"),
+    "20 % too fast": (GROOVE, lambda t: with_speed(t, 20, "513msec"), "feed"),
+    "20 % too slow": (GROOVE, lambda t: with_speed(t, 20, "740msec"), "feed"),
+    "linear and too fast": (GROOVE, lambda t: with_speed(t, 20, "24mm/sec", "L"), "feed"),
+    "a second instead of its share": (GROOVE, lambda t: with_speed(t, 20, "2sec"), "feed"),
+    "a joint too fast on the path": (
+        GROOVE, lambda t: with_speed(t, 20, "1msec"), "joint speed",
+    ),
+    "a joint too fast on a link": (ZIGZAG, lambda t: with_speed(t, 31, "20msec"), "joint speed"),
+    "a full turn between positions": (
+        GROOVE, lambda t: with_joints(t, 25, sixth_joint_turned), "joint speed",
+    ),
+    "beyond a joint's limit": (
+        GROOVE, lambda t: with_joints(t, 25, sixth_joint_turned), "joint limits",
+    ),
+    "no position between two passes": (ZIGZAG, without(29, 30, 31, 32), "lifts"),
+    "through the face between two passes": (ZIGZAG, without(29, 30, 31, 32), "links (sampled)"),
+    "retract left out": (ZIGZAG, without(30), "lifts"),
+    "retract and approach left out": (ZIGZAG, without(30, 31), "lifts"),
+    "retract and lead-out left out": (ZIGZAG, retract_and_lead_out_left_out, "lifts"),
+    "begins on the face": (ZIGZAG, without(1, 2, 3), "lifts"),
+    "begins at the lead-in": (ZIGZAG, without(1, 2), "lifts"),
+    "ends at the lead-out": (ZIGZAG, without(88, 89), "lifts"),
+    "spindle not started": (ZIGZAG, text("  CALL SPINDLE_ON ", "  !ALL SPINDLE_ON "), "events"),
+    "spindle not started again": (ZIGZAG, second("CALL SPINDLE_ON", "!CALL ON"), "events"),
+    "spindle not stopped": (ZIGZAG, text("CALL SPINDLE_OFF", "!CALL OFF"), "events"),
+    "spindle stopped while grinding": (ZIGZAG, behind(40, "CALL SPINDLE_OFF"), "events"),
+    "another program called": (GROOVE, behind(1, "CALL HOMEPOS"), "events"),
+    "an output on the path": (ZIGZAG, behind(10, "DO[1]=ON"), "events"),
+    "an output on a link": (ZIGZAG, behind(30, "DO[1]=ON"), "events"),
+    "dwell left out": (ZIGZAG, text("  WAIT   1.00(sec)", "  !AIT"), "events"),
+    "dwell cut short": (ZIGZAG, text("WAIT   1.00(sec)", "WAIT    .10(sec)"), "events"),
+    "a long wait on the face": (GROOVE, behind(20, "WAIT 999.00(sec)"), "events"),
+    "position line left out": (GROOVE, lambda t: without_line(t, 20), "position count"),
+    "position left out": (GROOVE, without(20), "feed"),
+    "position driven to twice": (
+        GROOVE, lambda t: with_line(t, 20, lambda line: 2 * line), "feed",
+    ),
+    "position written twice": (
+        GROOVE,
+        lambda t: edited(t, position(t, 21), position(t, 20).replace("P[20]", "P[21]")),
+        "path position",
+    ),
+    "a jump": (GROOVE, behind(20, "JMP LBL[1]"), "program flow"),
+    "a condition": (GROOVE, behind(20, "IF R[1]=1,JMP LBL[1]"), "program flow"),
+    "a skipped end": (GROOVE, behind(20, "END"), "program flow"),
+    "a register": (GROOVE, behind(20, "R[1]=5"), "program flow"),
+    "a position register": (GROOVE, behind(20, "PR[1]=LPOS"), "program flow"),
+    "an override of the speed": (GROOVE, behind(20, "OVERRIDE=100%"), "program flow"),
+    "an offset": (GROOVE, in_line(20, "CNT100", "CNT100 Offset,PR[1]"), "program flow"),
+    "an increment": (GROOVE, in_line(20, "CNT100", "CNT100 INC"), "program flow"),
+    "a target in a register": (GROOVE, in_line(20, "P[20]", "PR[20]"), "program flow"),
+    "a corner from a register": (GROOVE, in_line(20, "CNT100", "CNT R[3]"), "program flow"),
+    "untaught position": (
+        GROOVE, in_position(20, r"J3=.{10}", "J3=  ********"), "program flow",
+    ),
+    "a second group": (GROOVE, text("1,*,*,*,*", "1,1,*,*,*"), "program flow"),
+    "an external axis": (
+        GROOVE, text(" deg\r\n};", " deg,\r\n\tE1=   500.000  mm\r\n};"), "program flow",
+    ),
+    "another payload": (GROOVE, text("  PAYLOAD[1]", "  PAYLOAD[2]"), "payload"),
+    "no payload": (GROOVE, text("  PAYLOAD[1]", "  !AYLOAD[1]"), "payload"),
+    "two payloads": (GROOVE, behind(20, "PAYLOAD[2]"), "program flow"),
+    "clearance overstated": (
+        GROOVE, text("MIN CLEARANCE 50.0", "MIN CLEARANCE 50.1"), "stated clearance",
+    ),
+    "written for another cell": (GROOVE, text("!DIGEST ", "!DIGEST 0"), "cell digest"),
+}  # fmt: skip
 
 
-def test_moves_that_are_too_fast_for_a_joint_are_noticed(written):
-    result, text = written
-    assert failed(result.problem, re.sub(r"\d+msec", "1msec", text)) == {"feed", "joint speed"}
+UNHASHED = {"a second group"}
+"""Faults in the header, which the hash leaves out."""
 
 
-@pytest.mark.parametrize("speed", ["10%", "100%", "500msec", "800msec", "2sec"])
-def test_another_speed_while_grinding_is_noticed(written, speed):
-    result, text = written
-    line = next(line for line in text.split("\r\n") if "J P[20] " in line)
-    changed = re.sub(r"J P\[20\] \S+", f"J P[20] {speed}", line)
-    assert failed(result.problem, text.replace(line, changed)) == {"feed"}
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_is_caught_under_its_own_name(name):
+    cell, change, expected = FAULTS[name]
+    changed = change(written(cell))
+    assert changed != written(cell)
+    names = {one.name for one in checks_of(planned(cell).problem, changed) if not one.passed}
+    assert expected in names
+    assert "hash" in names or name in UNHASHED
 
 
-def test_a_link_through_the_flange_is_noticed(written, tmp_path):
-    """Both ends are sound; the straight joint move between them is not."""
-    from solver.errors import RefusedError
-
-    result, _ = written
-    problem = result.problem
-    one = problem.toolpath.passes[0]
-    across = one.poses[-3:].copy()
-    across[:, :3, 3] = [(0.300, 0.161, 0.1425), (0.290, 0.161, 0.1425), (0.280, 0.161, 0.1425)]
-    passes = (
-        replace(one, poses=one.poses[-3:], roles=one.roles[-3:]),
-        replace(one, poses=across, roles=one.roles[-3:], touches=""),
-    )
-    linked = plan(replace(problem, toolpath=problem.toolpath.with_passes(passes)))
-    with pytest.raises(RefusedError, match="between positions"):
-        write_program(linked, tmp_path / "LINK.LS")
-    assert not list(tmp_path.iterdir())
+@pytest.mark.parametrize("cell", [GROOVE, ZIGZAG])
+def test_what_was_written_passes_every_check(cell):
+    assert all(one.passed for one in checks_of(planned(cell).problem, written(cell)))
 
 
-def test_the_sweep_between_positions_is_no_coarser_than_it_says(written):
-    """Every vertex of the moving bodies moves at most 2 mm from sample to sample."""
-    from solver.analysis.motion_check import SAMPLE_STEP, body_reach
-    from solver.candidates.generate import build_scene
-    from solver.kinematics.arm import forward_frames
-
-    result, _ = written
-    problem = result.problem
-    scene = build_scene(problem)
-    reach = body_reach(problem, scene)
-    random = np.random.default_rng(5)
-    for _ in range(200):
-        joints = random.uniform(problem.robot.limits[:, 0], problem.robot.limits[:, 1])
-        step = random.normal(size=6)
-        step *= SAMPLE_STEP / (np.abs(step) @ reach)
-        before, after = forward_frames(problem.robot, np.array([joints, joints + step]))
-        for row, frame in enumerate(scene.packed.frame):
-            away = random.normal(size=(20, 3))
-            away *= scene.packed.radius[row] / np.linalg.norm(away, axis=1)[:, None]
-            points = np.c_[scene.packed.moving.position[row] + away, np.ones(20)]
-            moved = np.linalg.norm((points @ (after[frame] - before[frame]).T)[:, :3], axis=1)
-            assert moved.max() <= SAMPLE_STEP + 1e-9
-
-
-def test_an_accepted_clearance_is_stamped_only_where_it_is_needed(written, tmp_path):
-    result, _ = written
-    write_program(result, tmp_path / "A.LS", accepted_clearance=10.0 * MM)
-    assert "ACCEPTED" not in (tmp_path / "A.LS").read_text("ascii")
-
-
-@pytest.mark.parametrize("value", ["-100.000", "0.000", "nan", "1e9", ""])
-def test_a_senseless_accepted_clearance_in_a_file_is_refused(written, value):
-    from solver.errors import InputError
-    from solver.pipeline.programming import required_clearance
-
-    result, text = written
-    changed = text.replace("!verify in T1", f"!ACCEPTED CLEARANCE {value} MM")
-    with pytest.raises(InputError, match="clearance"):
-        required_clearance(result.problem, read_program(changed, "GROOVE.LS"))
-
-
-def edited(text, old, new):
-    assert old in text
-    return text.replace(old, new, 1)
-
-
-DANGEROUS = {
-    "first move in a millisecond": ("J P[1] 10% FINE", "J P[1] 1msec CNT100"),
-    "first move at full speed": ("J P[1] 10% FINE", "J P[1] 100% FINE"),
-    "last corner cut": ("msec FINE", "msec CNT100"),
-    "corner from a register": ("CNT100", "CNT R[3]"),
-    "another program is called": ("!verify in T1 ;", "CALL HOMEPOS ;"),
-    "an output": ("!verify in T1 ;", "DO[1]=OFF ;"),
-    "a long wait": ("!verify in T1 ;", "WAIT 999.00(sec) ;"),
-    "a payload": ("!verify in T1 ;", "PAYLOAD[9] ;"),
-    "a macro": ("/PROG  GROOVE", "/PROG  GROOVE Macro"),
-    "a second group": ("1,*,*,*,*", "1,1,*,*,*"),
-    "an external axis": (" deg\r\n};", " deg,\r\n\tE1=   500.000  mm\r\n};"),
-    "no digest": ("!DIGEST", "!DIGES"),
-    "less clearance": ("!verify in T1", "!ACCEPTED CLEARANCE 0.001 MM"),
+HASH_ALONE = {
+    "J6 0.01 deg off": (GROOVE, lambda t: with_joints(t, 20, joint_off(6, 0.01))),
+    "one joint by the last decimal": (GROOVE, lambda t: with_joints(t, 20, joint_off(1, 0.001))),
+    "first move at full speed": (GROOVE, lambda t: with_speed(t, 1, "100%")),
+    "first move in a millisecond": (GROOVE, lambda t: with_speed(t, 1, "1msec")),
+    "link at full speed": (ZIGZAG, lambda t: with_speed(t, 31, "100%")),
+    "home left out": (ZIGZAG, without(1)),
+    "lead-out left out": (ZIGZAG, without(29)),
+    "no digest": (GROOVE, text("!DIGEST ", "!DIGES ")),
+    "less clearance accepted": (GROOVE, text("!verify in T1", "!ACCEPTED CLEARANCE 0.001 MM")),
+    "another remark": (GROOVE, text("!verify in T1", "!verified")),
+    "another tool left selected": (GROOVE, behind(56, "UTOOL_NUM=5")),
 }
 
 
-@pytest.mark.parametrize("name", DANGEROUS)
-def test_an_edit_that_leaves_the_positions_alone_is_noticed(written, name):
-    result, text = written
-    changed = edited(text, *DANGEROUS[name])
-    checks = check_program(result.problem, read_program(changed, "GROOVE.LS"), 50.0 * MM)
-    assert not all(check.passed for check in checks)
+@pytest.mark.parametrize("name", HASH_ALONE)
+def test_an_edit_that_keeps_the_motion_sound_is_caught_by_the_hash_alone(name):
+    cell, change = HASH_ALONE[name]
+    checks = checks_of(planned(cell).problem, change(written(cell)))
+    assert [one.name for one in checks if not one.passed] == ["hash"]
 
 
-def test_another_tool_left_selected_at_the_end_is_noticed(written):
-    result, text = written
-    last = text.index("/POS")
-    changed = text[:last] + "  58:  UTOOL_NUM=5 ;\r\n" + text[last:]
-    checks = check_program(result.problem, read_program(changed, "GROOVE.LS"), 50.0 * MM)
-    assert not all(check.passed for check in checks)
+NO_FAULT = {
+    "blanks before the semicolon": lambda t: re.sub(r" +;", ";", t),
+    "blanks for tabs": lambda t: t.replace("\t", "  "),
+    "other line ends": lambda t: t.replace("\r\n", "\n"),
+    "no line numbers": lambda t: re.sub(r"(?m)^ +\d+:", ":", t),
+    "more blanks": lambda t: re.sub(r"(?m)^( +\d+:)([JL]) ", r"\1  \2  ", t),
+    "blanks behind the numbers": lambda t: re.sub(r"(J\d)= +", r"\1 = ", t),
+    "another comment": lambda t: edited(t, '"posopt"', '"night shift"'),
+    "written on another day": lambda t: edited(t, "DATE 26-01-01", "DATE 31-12-24"),
+}  # fmt: skip
 
 
-def test_a_joint_that_is_no_number_never_passes(written):
-    from solver.analysis.motion_check import check_motion
-
-    result, _ = written
-    joints = result.sequence.pendant.copy()
-    joints[5, 2] = np.nan
-    checks = check_motion(result.problem, joints, np.full(50, 0.6))
-    assert {one.name for one in checks if not one.passed} >= {
-        "joint speed",
-        "between positions (sampled)",
-    }
+@pytest.mark.parametrize("name", NO_FAULT)
+def test_an_edit_that_changes_nothing_is_no_fault(name):
+    changed = NO_FAULT[name](written(GROOVE))
+    assert changed != written(GROOVE)
+    assert all(one.passed for one in checks_of(planned(GROOVE).problem, changed))
 
 
-def test_a_clearance_that_is_accepted_is_checked_as_it_is_stamped(tmp_path):
-    from solver.errors import InputError
+def test_a_program_in_a_file_of_another_name_is_noticed():
+    checks = checks_of(planned(GROOVE).problem, written(GROOVE), "OTHER.LS")
+    assert [one.name for one in checks if not one.passed] == ["program name"]
 
-    result = plan(load_cell("groove_paper", beam="HW125"))
-    with pytest.raises(InputError, match="at least"):
-        write_program(result, tmp_path / "A.LS", accepted_clearance=1e-7)
-    write_program(result, tmp_path / "A.LS", accepted_clearance=0.0300004)
-    assert "ACCEPTED CLEARANCE 30.000 MM" in (tmp_path / "A.LS").read_text("ascii")
+
+@pytest.mark.parametrize("kept", [0.1, 0.5, 0.9, 0.999])
+def test_a_cut_file_is_refused_by_the_reader(kept):
+    whole = written(GROOVE)
+    with pytest.raises(InputError, match=r"GROOVE\.LS, line \d+.*missing"):
+        read_program(whole[: int(kept * len(whole))], "GROOVE.LS")
+
+
+def test_a_position_that_is_given_twice_is_refused_by_the_reader():
+    entry = position(written(GROOVE), 20)
+    with pytest.raises(InputError, match=r"P\[20\] is given twice"):
+        read_program(edited(written(GROOVE), entry, entry + entry), "GROOVE.LS")
+
+
+def test_a_line_to_a_position_that_is_not_there_is_refused_by_the_reader():
+    text = written(GROOVE)
+    with pytest.raises(InputError, match=r"P\[20\]"):
+        read_program(edited(text, position(text, 20), ""), "GROOVE.LS")
+
+
+def test_any_change_of_a_digit_changes_the_hash():
+    """Every position counts, not just those of the pass."""
+    text = written(GROOVE)
+    stated = stated_hash(read_program(text, "GROOVE.LS"))
+    assert content_hash([read_program(text, "GROOVE.LS")]) == stated
+    for number in range(1, 57):
+        changed = with_joints(text, number, joint_off(1 + number % 6, 0.001))
+        assert content_hash([read_program(changed, "GROOVE.LS")]) != stated
+
+
+@pytest.mark.parametrize("value", ["-100.000", "0.000", "nan", "1e9", ""])
+def test_a_senseless_accepted_clearance_in_a_file_is_refused(value):
+    changed = edited(written(GROOVE), "!verify in T1", f"!ACCEPTED CLEARANCE {value} MM")
+    with pytest.raises(InputError, match="clearance"):
+        required_clearance(planned(GROOVE).problem, read_program(changed, "GROOVE.LS"))
+
+
+def test_the_program_says_where_it_comes_from():
+    text = written(ZIGZAG)
+    assert "!CELL zigzag_hw250 ;" in text
+    assert "!BEAM HW250 ;" in text
+    assert "!UF1 X 900.000 Y -200.000 ;" in text
+    assert "!UT1 Z 410.000 W 0.000 ;" in text
+    assert "!verify in T1 ;" in text
+    assert " safe" not in text.lower()
+    assert text.startswith("/PROG  ZIGZAG\r\n")
+
+
+def test_geometry_alone_decides_where_a_program_states_no_hash():
+    """A program of another origin has neither hash nor digest, and its faults still have names."""
+    plain = re.sub(r"(?m)^ +\d+:  !(HASH|DIGEST) .*\r\n", "", written(GROOVE))
+    checks = checks_of(planned(GROOVE).problem, plain)
+    assert all(one.passed for one in checks)
+    assert not ANY_CHANGE & {one.name for one in checks}
+    off = with_joints(plain, 20, joint_off(3, 0.1))
+    assert "path position" in failed(planned(GROOVE).problem, off, file_of(GROOVE))
+    assert line_to(plain, 20) == line_to(off, 20)

@@ -9,25 +9,42 @@ from typing import Any
 
 import numpy as np
 
-from solver.model.program import JointProgram, Move, rounded_joints
+from solver.model.program import (
+    JointProgram,
+    MotionKind,
+    Move,
+    NumberedPose,
+    Speed,
+    rounded_joints,
+)
 from solver.model.toolpath import Event, EventKind
 
 GOLDEN = Path(__file__).parent.parent / "golden" / "groove_3.LS"
 
 
-def move(degrees: Sequence[float], **what: Any) -> Move:
-    if not {"percent", "duration"} & set(what):
-        what["percent"] = 10
-    return Move(rounded_joints(np.radians(np.array(degrees, dtype=float))), **what)
+def move(
+    degrees: Sequence[float],
+    percent: float | None = None,
+    duration: float | None = None,
+    linear: float | None = None,
+    **what: Any,
+) -> Move:
+    """A move to joints [deg], at 10 % where no time [s] and no TCP speed [m/s] is given."""
+    joints = rounded_joints(np.radians(np.array(degrees, dtype=float)))
+    if linear is not None:
+        return Move(joints, Speed.linear(linear), MotionKind.LINEAR, **what)
+    if duration is not None:
+        return Move(joints, Speed.duration(duration), **what)
+    return Move(joints, Speed.percent(10 if percent is None else percent), **what)
 
 
-def program(*moves: Move, **what: Any) -> JointProgram:
+def program(*moves: Move, uframe: int = 0, utool: int = 1, **what: Any) -> JointProgram:
     plain = JointProgram(
         name="PROGRAM",
         comment="",
         remarks=(),
-        uframe=0,
-        utool=1,
+        frame=NumberedPose(uframe, np.eye(4)),
+        tool=NumberedPose(utool, np.eye(4)),
         moves=moves or (move([0, 0, 0, 0, -90, 0]),),
         date="26-11-21",
         time="10:00:00",

@@ -5,7 +5,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from solver.errors import ModelError
-from solver.io.posts.fanuc_text import angle_text, ascii_remark, dwell_text, plain_text
+from solver.io.posts.fanuc_text import (
+    angle_text,
+    ascii_remark,
+    dwell_text,
+    plain_text,
+    stamped,
+)
 
 
 @pytest.mark.parametrize(
@@ -65,3 +71,42 @@ def test_compatibility_forms_of_the_breaking_characters_do_not_come_back():
 def test_a_refusal_names_the_character_and_its_place():
     with pytest.raises(ModelError, match=r"';' at character 3"):
         plain_text("a remark", "ab;c", 32)
+
+
+@given(
+    prefix=st.sampled_from(["", "R ", "OVERRIDE: "]),
+    text=st.text(alphabet="ab c.,", max_size=120) | st.text(max_size=60),
+)
+def test_a_long_text_is_broken_into_remarks_without_losing_a_character(prefix, text):
+    try:
+        remarks = stamped(prefix, text)
+    except ModelError:
+        foreign = any(not " " <= one <= "~" or one in ';"' for one in text)
+        assert foreign or text.endswith(" ") or " " * (32 - len(prefix)) in text
+        return
+    assert "".join(one.removeprefix(prefix) for one in remarks) == text
+    assert all(one.startswith(prefix) for one in remarks)
+    assert [plain_text("a remark", one, 32) for one in remarks] == list(remarks)
+
+
+def test_a_reason_becomes_as_few_remarks_as_it_needs():
+    reason = "fixture 3 is not there, cleared by the shift supervisor"
+    assert stamped("OVR ", reason) == (
+        "OVR fixture 3 is not there, clea",
+        "OVR red by the shift supervisor",
+    )
+    assert list(map(len, stamped("OVR ", "x" * 60))) == [32, 32, 8]
+
+
+def test_a_space_at_a_break_begins_the_next_remark():
+    assert stamped("", "a" * 31 + " b") == ("a" * 31, " b")
+
+
+def test_a_chinese_reason_is_refused_and_the_sentence_says_what_to_write():
+    with pytest.raises(ModelError, match=r"cannot hold Chinese.*pinyin.*character 5"):
+        stamped("OVR ", "夹具")
+
+
+def test_a_prefix_that_fills_a_remark_is_refused():
+    with pytest.raises(ModelError, match="leaves no room"):
+        stamped("x" * 32, "reason")

@@ -6,11 +6,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ls_examples import GOLDEN, golden_program, move, program
+from program_examples import m20ia
 
 from solver.errors import InputError, RefusedError
+from solver.io import verified_program
 from solver.io.ls_reader import read_program
 from solver.io.posts import POSTS, PostOptions
-from solver.io.verified_program import differences, write_verified
 from solver.model.toolpath import Event, EventKind
 
 EVENTS = st.one_of(
@@ -30,6 +31,7 @@ MOVES = st.builds(
     lambda row, speed, cnt, events: move(row, cnt=cnt, events=tuple(events), **speed),
     st.lists(st.floats(-400, 400), min_size=6, max_size=6),
     st.fixed_dictionaries({"percent": st.integers(1, 100)})
+    | st.fixed_dictionaries({"linear": st.floats(0.001, 2.0)})
     | st.fixed_dictionaries({"duration": st.floats(1e-6, 32.0)}),
     st.none() | st.integers(0, 100),
     st.lists(EVENTS, max_size=2),
@@ -44,25 +46,55 @@ def accept(_found):
     """A recheck that finds nothing wrong."""
 
 
+JOINT = POSTS["fanuc-joint"]
+
+
+def write_verified(asked, path, verify, post=JOINT):
+    return verified_program.write_verified(asked, path, verify, PostOptions(), post, m20ia())
+
+
+def rendered(asked):
+    (file,) = JOINT.render(asked, PostOptions(), m20ia())
+    return file
+
+
+def differences(asked, text):
+    found = (read_program(text, f"{asked.name}.LS"),)
+    return list(verified_program.differences(asked, found, PostOptions(), m20ia()))
+
+
 def post_that_writes(change):
     """A post that goes wrong: `change` is applied to the text of the sound one."""
-    sound = POSTS["fanuc-joint"]
-    return replace(sound, render=lambda asked, options: change(sound.render(asked, options)))
+
+    def render(asked, options, robot):
+        (file,) = JOINT.render(asked, options, robot)
+        return (file._replace(text=change(file.text)),)
+
+    return replace(JOINT, render=render)
+
+
+def post_that_renders(change):
+    """A post that goes wrong: `change` is applied to the program before it is rendered."""
+    return replace(
+        JOINT, render=lambda asked, options, robot: JOINT.render(change(asked), options, robot)
+    )
 
 
 @given(moves=st.lists(MOVES, min_size=1, max_size=4), uframe=st.integers(0, 9))
 def test_what_the_post_writes_never_differs_from_the_program(moves, uframe):
     asked = program(*moves, uframe=uframe, remarks=(" a remark",))
-    text = POSTS["fanuc-joint"].render(asked, PostOptions())
-    assert list(differences(asked, read_program(text, "P.LS"))) == []
+    assert differences(asked, rendered(asked).text) == []
 
 
 def test_the_file_is_written_and_what_was_read_back_is_what_was_rechecked(tmp_path):
     seen = []
     path = tmp_path / "GROOVE_3.LS"
-    found = write_verified(golden_program(), path, seen.append)
+    written = write_verified(golden_program(), path, seen.append)
     assert path.read_bytes() == GOLDEN.read_bytes()
-    assert seen == [found]
+    assert written.paths == (path,)
+    assert written.stale == ()
+    assert seen == [written.found]
+    (found,) = written.found
     assert np.array_equal(found.path_joints(), golden_program().joints)
     assert names(tmp_path) == ["GROOVE_3.LS"]
 
@@ -103,7 +135,7 @@ def test_a_failed_recheck_leaves_nothing_but_an_older_file(tmp_path, failure, ol
         ("UFRAME_NUM=0", "UFRAME_NUM=1", "UFRAME_NUM reads 1 instead of 0"),
         ("UTOOL_NUM=1", "UTOOL_NUM=2", "UTOOL_NUM reads 2 instead of 1"),
         ("   5:J", "   6:J", "line 26 has number 6 instead of 5"),
-        ("J P[1] 10%", "J P[1] 11%", "line 26 has the speed 11% instead of 10%"),
+        ("J P[1] 10%", "J P[1] 11%", "line 26 has the speed 11% instead of 10 %"),
         ("250msec", "249msec", "line 29 has the speed 249msec instead of 0.25 s"),
         ("250msec", "251msec", "251msec instead of 0.25 s"),
         ("250msec", "250sec", "250sec instead of 0.25 s"),
@@ -148,11 +180,7 @@ def test_a_post_that_writes_something_else_is_found_out_and_nothing_is_left(
 
 
 def test_a_move_that_was_dropped_is_found_out(tmp_path):
-    post = POSTS["fanuc-joint"]
-    short = replace(
-        post,
-        render=lambda asked, options: post.render(replace(asked, moves=asked.moves[:-1]), options),
-    )
+    short = post_that_renders(lambda asked: replace(asked, moves=asked.moves[:-1]))
     asked = program(move([1] * 6), move([2] * 6))
     with pytest.raises(RefusedError, match="instructions instead of"):
         write_verified(asked, tmp_path / "PROGRAM.LS", accept, post=short)
@@ -160,11 +188,7 @@ def test_a_move_that_was_dropped_is_found_out(tmp_path):
 
 
 def test_moves_in_another_order_are_found_out(tmp_path):
-    post = POSTS["fanuc-joint"]
-    turned = replace(
-        post,
-        render=lambda asked, options: post.render(replace(asked, moves=asked.moves[::-1]), options),
-    )
+    turned = post_that_renders(lambda asked: replace(asked, moves=asked.moves[::-1]))
     asked = program(move([1] * 6), move([2] * 6))
     with pytest.raises(RefusedError, match=r"P\[1\] has J1 = 2.000000 deg instead of 1.000000"):
         write_verified(asked, tmp_path / "PROGRAM.LS", accept, post=turned)
@@ -181,13 +205,13 @@ def test_a_disk_that_lost_what_was_sent_is_found_out(tmp_path, monkeypatch, on_d
 def test_a_disk_that_changed_a_byte_without_meaning_is_found_out(tmp_path, monkeypatch):
     changed = GOLDEN.read_bytes().replace(b"OWNER\t\t", b"OWNER\t ")
     monkeypatch.setattr(Path, "read_bytes", lambda _path: changed)
-    with pytest.raises(RefusedError, match="bytes differ"):
+    with pytest.raises(RefusedError, match=r"bytes of GROOVE_3\.LS differ"):
         write_verified(golden_program(), tmp_path / "GROOVE_3.LS", accept)
 
 
 @pytest.mark.parametrize("name", ["OTHER.LS", "PROGRAM.TXT", "PROGRAM", "PROGRAM.LS.LS"])
 def test_a_file_that_is_not_named_as_its_program_is_refused(tmp_path, name):
-    with pytest.raises(InputError, match=r"from a file named PROGRAM\.LS"):
+    with pytest.raises(InputError, match=r"into a file of its name, PROGRAM\.LS"):
         write_verified(program(), tmp_path / name, accept)
     assert names(tmp_path) == []
 
@@ -212,9 +236,7 @@ def test_a_name_that_no_controller_takes_leaves_nothing(tmp_path):
 def test_a_thousandth_of_a_degree_in_any_joint_is_a_difference(row, joint, step):
     other = list(row)
     other[joint] += step
-    text = POSTS["fanuc-joint"].render(
-        program(move([value / 1000 for value in other])), PostOptions()
-    )
+    text = rendered(program(move([value / 1000 for value in other]))).text
     asked = program(move([value / 1000 for value in row]))
-    (difference,) = differences(asked, read_program(text, "P.LS"))
+    (difference,) = differences(asked, text)
     assert f"J{joint + 1} = " in difference

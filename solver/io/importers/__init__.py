@@ -11,7 +11,7 @@ from solver.io.importers.parametric import (
     face_line_toolpath,
     parametric_toolpath,
 )
-from solver.io.importers.registry import import_source, load_toolpath
+from solver.io.importers.registry import import_source, load_toolpath, path_source
 from solver.io.importers.resampling import resample
 from solver.io.importers.source import Source
 
@@ -24,5 +24,6 @@ __all__ = [
     "import_source",
     "load_toolpath",
     "parametric_toolpath",
+    "path_source",
     "resample",
 ]

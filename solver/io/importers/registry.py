@@ -52,8 +52,13 @@ def load_toolpath(path: str | Path, options: ImportOptions | None = None) -> Too
     InputError
         One sentence that names the file, the line and the column.
     """
+    return import_source(path_source(path), options)
+
+
+def path_source(path: str | Path) -> Source:
+    """Read the bytes of a path file whose extension names a known format."""
     _importer(str(path))
-    return import_source(read_source(path), options)
+    return read_source(path)
 
 
 def import_source(source: Source, options: ImportOptions | None = None) -> Toolpath:

@@ -5,18 +5,35 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
-from decimal import ROUND_CEILING, Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from numbers import Integral
 from typing import Final
 
 from solver.errors import ModelError
 from solver.model.program import JOINT_DECIMALS
+from solver.units import MM_PER_M
 
 REMARK_LENGTH: Final = 32
 COMMENT_LENGTH: Final = 16
 
 LARGEST_ANGLE: Final = 9_999.999
 """Largest joint value that the field of ten characters is used for [deg]."""
+
+LARGEST_LENGTH: Final = 99_999.999
+"""Largest coordinate that the field of ten characters holds with its sign [mm]."""
+
+SLOWEST: Final = 1
+FASTEST: Final = 2_000
+"""Smallest and largest TCP speed of a linear move [mm/s]."""
+
+SPEED_STEP: Final = Decimal("0.1")
+"""Step in which a TCP speed is written [mm/s]."""
+
+SPEED_SLACK: Final = Decimal("1e-9")
+"""How far a TCP speed may lie below its step and still be meant as that step [mm/s].
+
+It is what metres per second in binary cost, and no more.
+"""
 
 LONGEST_MOVE: Final = 32_000
 """Longest motion time that can be given in milliseconds [ms]."""
@@ -30,13 +47,45 @@ _BREAKING: Final = frozenset(';"')
 
 def angle_text(degrees: float) -> str:
     """Return `degrees` with three decimals, no zero before the point, and never '-0.000'."""
-    if not abs(degrees) <= LARGEST_ANGLE:
-        raise ModelError(f"a joint value must lie within +-{LARGEST_ANGLE:g} deg, got {degrees:g}")
-    text = f"{abs(degrees):.{JOINT_DECIMALS}f}"
+    return _field("a joint value", degrees, LARGEST_ANGLE, "deg")
+
+
+def length_text(millimetres: float) -> str:
+    """Return a coordinate [mm] in the same form as an angle."""
+    return _field("a coordinate", millimetres, LARGEST_LENGTH, "mm")
+
+
+def _field(what: str, value: float, largest: float, unit: str) -> str:
+    if not abs(value) <= largest:
+        raise ModelError(f"{what} must lie within +-{largest:.3f} {unit}, got {value:g}")
+    text = f"{abs(value):.{JOINT_DECIMALS}f}"
     if float(text) == 0.0:
         return text
-    sign = "-" if degrees < 0.0 else ""
+    sign = "-" if value < 0.0 else ""
     return sign + text.removeprefix("0")
+
+
+def speed_text(speed: float) -> str:
+    """Return a TCP speed [m/s] in mm/s: whole where it is, else one decimal, rounded down.
+
+    Rounded down, so that the tool is never faster than asked; a speed that is a tenth but for
+    what binary numbers cost is that tenth.
+    """
+    millimetres = _decimal(speed) * 1000 if math.isfinite(speed) else Decimal(0)
+    steps = ((millimetres + SPEED_SLACK) / SPEED_STEP).to_integral_value(ROUND_FLOOR)
+    posted = steps * SPEED_STEP
+    if not SLOWEST <= posted <= FASTEST:
+        raise ModelError(
+            f"the TCP speed of a linear move is {SLOWEST} to {FASTEST} mm/s on the controller, "
+            f"got {speed * MM_PER_M:g} mm/s"
+        )
+    return f"{posted:.0f}" if posted == int(posted) else f"{posted:.1f}"
+
+
+def percent_text(percent: float) -> str:
+    """Return a share of the joint speed, which a controller takes in whole percent."""
+    whole = int(percent) if math.isfinite(percent) and percent == int(percent) else percent
+    return str(whole_number("a joint speed in percent", whole, 1, 100))
 
 
 def milliseconds(duration: float) -> int:
@@ -94,17 +143,56 @@ def program_name(name: str, longest: int) -> str:
 
 def plain_text(what: str, text: str, longest: int) -> str:
     """Return `text` if it cannot break the file: short, printable ASCII, no ; or quote."""
-    for column, character in enumerate(text, start=1):
-        if not " " <= character <= "~" or character in _BREAKING:
-            raise ModelError(
-                f'{what} takes printable ASCII without ; and ", got {character!r} at character '
-                f"{column} of {text[:50]!r}"
-            )
+    _check_characters(what, text)
     if len(text) > longest:
         raise ModelError(f"{what} has at most {longest} characters, got {len(text)}: {text[:50]!r}")
     if text.endswith(" "):
         raise ModelError(f"{what} must not end with a space, got {text!r}")
     return text
+
+
+def stamped(prefix: str, text: str, longest: int = REMARK_LENGTH) -> tuple[str, ...]:
+    """Break a text into remarks that all begin with `prefix`; no character is lost.
+
+    What follows the prefixes, joined, is the text again. A remark cannot end with a space, so a
+    space at which the text is broken begins the next remark; an empty text gives none.
+
+    Raises
+    ------
+    ModelError
+        When the text holds what a remark cannot (foreign letters, ; or a quote), ends with a
+        space or has so many spaces in a row that a remark would hold nothing else.
+    """
+    _check_characters("a remark", prefix + text)
+    room = longest - len(prefix)
+    if room < 1:
+        raise ModelError(f"the beginning {prefix[:50]!r} leaves no room in a remark of {longest}")
+    remarks = []
+    rest = text
+    while rest:
+        piece = rest[:room].rstrip(" ")
+        if not piece:
+            raise ModelError(
+                f"a text for remarks ends with a space or has {room} spaces in a row: {text[:50]!r}"
+            )
+        if len(rest) <= room and piece != rest:
+            raise ModelError(f"a text for remarks must not end with a space, got {text[-50:]!r}")
+        remarks.append(prefix + piece)
+        rest = rest[len(piece) :]
+    return tuple(remarks)
+
+
+def _check_characters(what: str, text: str) -> None:
+    for column, character in enumerate(text, start=1):
+        if " " <= character <= "~" and character not in _BREAKING:
+            continue
+        where = f"{character!r} at character {column} of {text[:50]!r}"
+        if unicodedata.name(character, "").startswith("CJK"):
+            raise ModelError(
+                f"{what} cannot hold Chinese characters, since the controller reads printable "
+                f"ASCII alone; write it in Latin letters (pinyin), got {where}"
+            )
+        raise ModelError(f'{what} takes printable ASCII without ; and ", got {where}')
 
 
 def ascii_remark(text: str, longest: int = REMARK_LENGTH) -> str:

@@ -1,0 +1,1 @@
+"""The project: its inputs as plain data, with undo, and its file."""

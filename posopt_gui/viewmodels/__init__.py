@@ -1,0 +1,1 @@
+"""From results to arrays, colours and rows; no Qt, so that tests need no screen."""

@@ -1,0 +1,1 @@
+"""The panels of the window; each talks to the session alone."""

@@ -1,0 +1,165 @@
+"""Jobs on a thread of their own: one at a time of each kind, late answers dropped."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from PySide6.QtCore import QObject, QThreadPool, Signal
+
+from solver.errors import Cancelled, PosoptError
+from solver.progress import Monitor
+
+REPORT_INTERVAL = 0.05
+"""Least time between two reports of progress [s]: more would only flood the event queue."""
+
+Work = Callable[[Monitor], Any]
+
+
+class _Relay(QObject):
+    """Carries signals from the worker's thread to the window's."""
+
+    progress = Signal(int, str, int, int)
+    done = Signal(int, object)
+    failed = Signal(int, object)
+
+
+class _JobMonitor:
+    """Progress and cancelling of one job."""
+
+    def __init__(self, relay: _Relay, number: int) -> None:
+        self._relay, self._number = relay, number
+        self._stop = threading.Event()
+        self._last = 0.0
+
+    def stop(self) -> None:
+        self._stop.set()
+
+    def report(self, stage: str, done: int, total: int) -> None:
+        now = time.monotonic()
+        if now - self._last >= REPORT_INTERVAL or done >= total:
+            self._last = now
+            self._relay.progress.emit(self._number, stage, done, total)
+
+    def cancelled(self) -> bool:
+        return self._stop.is_set()
+
+
+@dataclass(frozen=True, slots=True)
+class _Waiting:
+    work: Work
+    number: int
+
+
+class JobLine(QObject):
+    """Runs the newest job; an older one is cancelled, one that still waits is forgotten.
+
+    Signals come on the thread that owns this object: `done(answer)`, `failed(error)` (a
+    PosoptError, or any other exception, which is a defect), `progress(stage, done, total)` and
+    `busy_changed(bool)`. After `stop` nothing more is said of the jobs before.
+    """
+
+    done = Signal(object)
+    failed = Signal(object)
+    progress = Signal(str, int, int)
+    busy_changed = Signal(bool)
+
+    def __init__(self, pool: QThreadPool, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._pool = pool
+        self._relay = _Relay()
+        self._relay.progress.connect(self._on_progress)
+        self._relay.done.connect(self._on_done)
+        self._relay.failed.connect(self._on_failed)
+        self._newest = 0
+        self._running: _JobMonitor | None = None
+        self._waiting: _Waiting | None = None
+        self._closed = False
+
+    @property
+    def busy(self) -> bool:
+        """Whether a job runs whose answer is wanted."""
+        return self._running is not None and not self._running.cancelled()
+
+    def submit(self, work: Work, *, cancel_running: bool = True) -> None:
+        """Run `work` as soon as the job before it has ended."""
+        if self._closed:
+            return
+        self._newest += 1
+        if self._running is not None:
+            if cancel_running:
+                self._running.stop()
+            self._waiting = _Waiting(work, self._newest)
+            return
+        self._start(work, self._newest)
+        self.busy_changed.emit(True)
+
+    def stop(self) -> None:
+        """Cancel the running job and forget the waiting one."""
+        self._waiting = None
+        self._newest += 1
+        if self._running is not None:
+            was_busy = self.busy
+            self._running.stop()
+            if was_busy:
+                self.busy_changed.emit(False)
+
+    def close(self) -> None:
+        """Cancel everything and take no more; the pool still has to be waited for."""
+        self._closed = True
+        self.stop()
+
+    def _start(self, work: Work, number: int) -> None:
+        relay = self._relay
+        monitor = _JobMonitor(relay, number)
+        self._running = monitor
+
+        def run() -> None:
+            try:
+                answer = work(monitor)
+            except (Cancelled, PosoptError) as error:
+                _send(relay.failed, number, error)
+            except Exception as error:
+                _send(relay.failed, number, error)
+            else:
+                _send(relay.done, number, answer)
+
+        self._pool.start(run)
+
+    def _on_progress(self, number: int, stage: str, done: int, total: int) -> None:
+        if number == self._newest and not self._closed:
+            self.progress.emit(stage, done, total)
+
+    def _on_done(self, number: int, answer: object) -> None:
+        self._finish(number, lambda: self.done.emit(answer))
+
+    def _on_failed(self, number: int, error: object) -> None:
+        if isinstance(error, Cancelled):
+            self._finish(number, lambda: None)
+        else:
+            self._finish(number, lambda: self.failed.emit(error))
+
+    def _finish(self, number: int, tell: Callable[[], None]) -> None:
+        was_busy = self.busy
+        self._running = None
+        waiting, self._waiting = self._waiting, None
+        if waiting is not None and not self._closed:
+            self._start(waiting.work, waiting.number)
+            if not was_busy:
+                self.busy_changed.emit(True)
+        elif was_busy:
+            self.busy_changed.emit(False)
+        # An answer that is no longer wanted is dropped.
+        if number == self._newest and not self._closed:
+            tell()
+
+
+def _send(signal: Any, number: int, value: object) -> None:
+    try:
+        signal.emit(number, value)
+    except RuntimeError:
+        # The window was closed and its objects are gone: nobody waits for the answer.
+        return

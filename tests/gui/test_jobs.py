@@ -1,0 +1,101 @@
+"""Jobs off the window's thread: the newest answer counts, cancelled ones stay silent."""
+
+import threading
+
+import pytest
+from PySide6.QtCore import QThreadPool
+
+from posopt_gui.workers.jobs import JobLine
+from solver.errors import Cancelled, InputError
+
+
+@pytest.fixture
+def line(qtbot):
+    pool = QThreadPool()
+    made = JobLine(pool)
+    yield made
+    made.close()
+    assert pool.waitForDone(10_000)
+
+
+def test_an_answer_comes_on_the_threads_of_the_window(line, qtbot):
+    seen = []
+    line.done.connect(lambda answer: seen.append((answer, threading.current_thread())))
+    line.submit(lambda _: 41 + 1)
+    qtbot.waitUntil(lambda: bool(seen))
+    assert seen == [(42, threading.main_thread())]
+
+
+def test_only_the_newest_of_many_answers_is_told(line, qtbot):
+    seen = []
+    line.done.connect(seen.append)
+    for number in range(50):
+        line.submit(lambda _, number=number: number)
+    qtbot.waitUntil(lambda: 49 in seen)
+    assert seen[-1] == 49
+    assert not line.busy
+
+
+def test_a_newer_job_cancels_the_older_one(line, qtbot):
+    started = threading.Event()
+
+    def endless(monitor):
+        started.set()
+        while not monitor.cancelled():
+            pass
+        raise Cancelled
+
+    seen = []
+    line.done.connect(seen.append)
+    line.submit(endless)
+    assert started.wait(5.0)
+    line.submit(lambda _: "second")
+    qtbot.waitUntil(lambda: seen == ["second"])
+
+
+def test_stop_is_silent_and_ends_being_busy(line, qtbot):
+    started = threading.Event()
+
+    def endless(monitor):
+        started.set()
+        while not monitor.cancelled():
+            pass
+        return "late"
+
+    told = []
+    line.done.connect(told.append)
+    line.failed.connect(told.append)
+    states = []
+    line.busy_changed.connect(states.append)
+    line.submit(endless)
+    assert started.wait(5.0)
+    line.stop()
+    assert not line.busy
+    with qtbot.waitSignal(line.done):
+        line.submit(lambda _: "next")
+    assert told == ["next"]
+    assert states[:2] == [True, False]
+
+
+def test_an_error_is_handed_over(line, qtbot):
+    def refuse(_):
+        raise InputError("no")
+
+    with qtbot.waitSignal(line.failed) as told:
+        line.submit(refuse)
+    assert isinstance(told.args[0], InputError)
+
+
+def test_progress_of_a_dropped_job_is_not_told(line, qtbot):
+    reports = []
+    line.progress.connect(lambda *args: reports.append(args))
+
+    def work(monitor):
+        monitor.report("stage", 1, 1)
+
+    with qtbot.waitSignal(line.done):
+        line.submit(work)
+    assert reports == [("stage", 1, 1)]
+    line.close()
+    line.submit(work)
+    assert reports == [("stage", 1, 1)]

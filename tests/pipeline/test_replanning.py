@@ -1,0 +1,123 @@
+"""Pins and forbidden regions: the cheapest sequence that fulfils them, and its price."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from solver.catalog import load_cell
+from solver.model.settings import Scheme
+from solver.model.wishes import Pin, Region
+from solver.pipeline.planning import layered_graph, plan
+from solver.pipeline.replanning import allowed_nodes, replan
+from solver.search.exact import exact
+from solver.units import DEG
+
+
+@pytest.fixture(scope="module")
+def planned():
+    return plan(load_cell("groove_paper"))
+
+
+def plain_optimum(result, allowed):
+    """Cost and nodes of the cheapest sequence over allowed nodes, by plain dynamic programming."""
+    nodes = result.candidates.nodes
+    model = nodes.model / result.problem.robot.cost_ranges
+    layers = [
+        np.flatnonzero(allowed & (nodes.candidate[:, 0] == layer))
+        for layer in range(len(result.problem.toolpath))
+    ]
+    value = np.zeros(len(layers[0]))
+    for before, after in pairwise(layers):
+        edges = np.abs(model[after][None] - model[before][:, None]).sum(axis=2)
+        value = (value[:, None] + edges).min(axis=0)
+    return float(value.min())
+
+
+def test_without_wishes_nothing_changes_and_nothing_is_paid(planned):
+    answer = replan(planned)
+    assert answer.price == pytest.approx(0.0, abs=1e-12)
+    np.testing.assert_array_equal(answer.sequence.nodes, planned.sequence.nodes)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_pin_is_passed_at_the_price_of_plain_dynamic_programming(planned, seed):
+    rng = np.random.default_rng(seed)
+    nodes = planned.candidates.nodes
+    possible = np.flatnonzero(np.isfinite(planned.extra_cost))
+    chosen = possible[rng.choice(len(possible), 2, replace=False)]
+    pins = [
+        Pin(int(nodes.candidate[node, 0]), float(planned.candidates.lean[node])) for node in chosen
+    ]
+    pins = list({pin.waypoint: pin for pin in pins}.values())
+    answer = replan(planned, pins)
+    for pin in pins:
+        assert answer.sequence.angles[pin.waypoint, 0] == pytest.approx(pin.lean)
+    wanted = plain_optimum(planned, allowed_nodes(planned, pins, []))
+    assert answer.sequence.cost == pytest.approx(wanted, abs=1e-12)
+    assert answer.price == pytest.approx(wanted - planned.sequence.cost, abs=1e-12)
+
+
+def test_the_price_of_one_pin_is_the_extra_cost_of_its_node(planned):
+    nodes = planned.candidates.nodes
+    node = int(np.flatnonzero(np.isfinite(planned.extra_cost) & (nodes.candidate[:, 0] == 20))[3])
+    pin = Pin(20, float(planned.candidates.lean[node]), branch=0)
+    assert replan(planned, [pin]).price == pytest.approx(planned.extra_cost[node], abs=1e-12)
+
+
+def test_a_forbidden_region_is_left_out(planned):
+    leans = planned.sequence.angles[10:20, 0]
+    region = Region(10, 19, float(leans.min()), float(leans.max()))
+    answer = replan(planned, regions=[region])
+    moved = answer.sequence.angles[10:20, 0]
+    assert np.all((moved < region.low - 1e-6) | (moved > region.high + 1e-6))
+    wanted = plain_optimum(planned, allowed_nodes(planned, [], [region]))
+    assert answer.sequence.cost == pytest.approx(wanted, abs=1e-12)
+
+
+def test_a_region_of_another_branch_changes_nothing(planned):
+    region = Region(0, 49, -25.0 * DEG, 25.0 * DEG, branch=5)
+    assert replan(planned, regions=[region]).price == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_layer_without_any_place_left_is_named(planned):
+    answer = replan(planned, regions=[Region(7, 9, -1.0, 1.0)])
+    assert answer.sequence is None
+    assert answer.layer == 7
+    assert "waypoint 8" in answer.reason
+
+
+def test_a_pin_where_nothing_is_feasible_says_so(planned):
+    answer = replan(planned, [Pin(12, 80.0 * DEG)])
+    assert answer.sequence is None
+    assert answer.layer == 12
+    assert "pinned" in answer.reason
+
+
+def test_a_branch_that_changes_within_a_pass_is_bound_to_links():
+    """The graph with one branch a pass has no sequence from one branch into another."""
+    problem = load_cell("groove_paper")
+    settings = replace(problem.settings, branches=tuple(range(8)), safety_distance=0.0)
+    result = plan(replace(problem, settings=settings), compare=(Scheme.EXACT,))
+    candidates = result.candidates
+    branch = candidates.branches[candidates.nodes.candidate[:, 2]]
+    layer = candidates.nodes.candidate[:, 0]
+    other = next(
+        number
+        for number in range(1, 8)
+        if all(((branch == number) & (layer == one)).any() for one in range(25, 50))
+    )
+    allowed = np.where(layer < 25, branch == 0, branch == other)
+    free, _ = layered_graph(candidates).subgraph(allowed)
+    bound, _ = layered_graph(candidates, one_branch=True).subgraph(allowed)
+    assert exact(free).found
+    assert not exact(bound).found
+
+
+def test_one_branch_along_each_pass_costs_what_the_free_optimum_costs_when_it_keeps_to_one():
+    result = plan(load_cell("groove_hw300"))
+    bound = layered_graph(result.candidates, one_branch=True)
+    allowed = result.candidates.nodes.clearance >= result.hard_minimum
+    graph, _ = bound.subgraph(allowed)
+    assert exact(graph).cost == pytest.approx(result.sequence.cost, abs=1e-12)
