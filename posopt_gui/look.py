@@ -31,7 +31,7 @@ class Look(QObject):
         """The colours."""
         return self._theme
 
-    def tr(self, text: str, **values: object) -> str:  # type: ignore[override]
+    def tr(self, text: str, /, **values: object) -> str:  # type: ignore[override]
         """The text in the chosen language; `values` fill its {names}."""
         found = translated(self._language, text)
         return found.format(**values) if values else found

@@ -72,6 +72,7 @@ def feed_checks(trace: ProgramTrace, predicted: tuple[FeedPrediction, ...]) -> l
     """Feed along the passes, joint speeds of all moves, and the cell's bounds of steps."""
     return [
         _feed_check(trace, line_feeds(trace, predicted)),
+        _lead_check(trace, predicted),
         _speed_check(trace, predicted),
         *_step_checks(trace),
     ]
@@ -96,6 +97,21 @@ def _feed_check(trace: ProgramTrace, lines: tuple[LineFeed, ...]) -> Check:
     value = 100.0 * _feed_error(worst)
     waypoint = trace.waypoint_of(worst.move + 1)
     return Check("feed", not missed and not percent, value, limit, unit, detail, waypoint)
+
+
+def _lead_check(trace: ProgramTrace, predicted: tuple[FeedPrediction, ...]) -> Check:
+    """The tool comes onto the face no faster than the feed, within the tolerance."""
+    limit = 100.0 * (1.0 + trace.problem.program.feed_tolerance)
+    largest, where, waypoint = 0.0, "no move leads onto a face", None
+    for span in trace.spans:
+        # A path that brings its own approach begins off the face.
+        if span.first == 0 or span.which.roles[0] is not Role.CONTACT:
+            continue
+        share = 100.0 * predicted[span.first - 1].fastest / span.which.feed
+        if share > largest:
+            largest, where = share, f"on the way to {at(trace, span.first)}"
+            waypoint = span.waypoint
+    return Check("lead speed", largest <= limit, largest, limit, "% of the feed", where, waypoint)
 
 
 def _feed_error(line: LineFeed) -> float:

@@ -7,29 +7,27 @@ from collections.abc import Sequence
 import numpy as np
 
 from solver.analysis.check import Check, down_mm, unfinished, worst
+from solver.analysis.corner_checks import corner_checks
 from solver.analysis.lift_checks import lift_check
 from solver.analysis.position_checks import angle_near, angle_ranges, at, outside
-from solver.analysis.trace import NO_SPAN, ProgramTrace
+from solver.analysis.trace import ProgramTrace
 from solver.kinematics.configuration import configuration
 from solver.model.program import MotionKind, Move
 from solver.model.robot import Robot
-from solver.units import DEG, DEG_PER_RAD, MM, MM_PER_M
+from solver.motion.feed import FeedPrediction
+from solver.units import DEG, DEG_PER_RAD, MM_PER_M
 
 BETWEEN_ANGLE_TOLERANCE = 1.0 * DEG
 """How far an angle of the tool may leave its range between two positions."""
 
 HALF_TURN = 180.0 * DEG
 
-_CUT_SPEEDS = (0.0, 0.2, 0.5, 1.0)
-_CUTS = (0.0, 1.9 * MM, 4.9 * MM, 11.1 * MM)
-"""Measured speeds [m/s] and what CNT50 cuts from a right-angled corner there [m]."""
 
-
-def motion_checks(trace: ProgramTrace) -> list[Check]:
+def motion_checks(trace: ProgramTrace, predicted: tuple[FeedPrediction, ...]) -> list[Check]:
     """All checks of the motion between the positions."""
     checks = [
         _deviation_check(trace),
-        _corner_check(trace),
+        *corner_checks(trace, predicted),
         _angle_check(trace),
         _between_check(trace, "between positions (sampled)", trace.contact, 0.0),
     ]
@@ -86,50 +84,6 @@ def _deviation_check(trace: ProgramTrace) -> Check:
         where,
         None if move is None else trace.waypoint_of(move + 1),
     )
-
-
-def _corner_check(trace: ProgramTrace) -> Check:
-    """How far rounded corners (CNT) of contact positions leave the checked path, estimated."""
-    limit = trace.problem.program.path_tolerance
-    found, position = 0.0, None
-    moved = trace.poses[:, :3, 3]
-    for number in range(1, len(moved) - 1):
-        cnt = trace.program.moves[number].cnt
-        if cnt is None or trace.span_of[number] == NO_SPAN:
-            continue
-        before, after = moved[number] - moved[number - 1], moved[number + 1] - moved[number]
-        lengths = float(np.linalg.norm(before)), float(np.linalg.norm(after))
-        if min(lengths) == 0.0:
-            continue
-        cosine = float(before @ after) / (lengths[0] * lengths[1])
-        feed = trace.spans[trace.span_of[number]].which.feed
-        cut = corner_cut(float(np.arccos(np.clip(cosine, -1.0, 1.0))), cnt, feed)
-        if cut > found:
-            found, position = cut, number
-    return Check(
-        "path at rounded corners (estimated)",
-        found <= limit,
-        found * MM_PER_M,
-        limit * MM_PER_M,
-        "mm",
-        "no corner is rounded" if position is None else f"at {at(trace, position)}",
-        None if position is None else trace.waypoint_of(position),
-        assumed=True,
-    )
-
-
-def corner_cut(angle: float, cnt: int, speed: float) -> float:
-    """How far a rounded corner passes by its position [m].
-
-    Measured on an M-20iD/25 at right angles: CNT50 cuts 1.9, 4.9 and 11.1 mm at 200, 500 and
-    1000 mm/s, and CNT100 about 2.4 times that. Taken as proportional to CNT below 50, and to
-    the sine of half the change of direction (`angle` [rad]); faster than measured, as the speed.
-    """
-    at_fifty = float(np.interp(speed, _CUT_SPEEDS, _CUTS))
-    if speed > _CUT_SPEEDS[-1]:
-        at_fifty *= speed / _CUT_SPEEDS[-1]
-    share = float(np.interp(cnt, (0.0, 50.0, 100.0), (0.0, 1.0, 2.4)))
-    return float(at_fifty * share * np.sin(angle / 2.0) / np.sin(np.pi / 4.0))
 
 
 def _angle_check(trace: ProgramTrace) -> Check:

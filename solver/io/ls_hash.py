@@ -17,7 +17,8 @@ def content_hash(files: Iterable[ProgramFile]) -> str:
     """
     digest = hashlib.sha256()
     for file in files:
-        digest.update(f"program {file.name}\n".encode())
+        groups = file.attributes.get("DEFAULT_GROUP", "")
+        digest.update(f"program {file.name} {file.kind} {groups}\n".encode())
         for one in file.instructions:
             if not one.text.startswith(f"!{HASH_REMARK}"):
                 digest.update(f"{' '.join(one.text.split())}\n".encode())

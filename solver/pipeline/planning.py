@@ -146,7 +146,7 @@ def exact_sequence(
         if found is None:
             break
         outcome, nodes, extra = found
-        low = nodes[_rounded_clearance(candidates, nodes) < hard]
+        low = nodes[rounded_clearance(candidates, nodes) < hard]
         if not len(low):
             return sequence_of(candidates, Scheme.EXACT, nodes, outcome.cost), extra, hard
         allowed = allowed & ~np.isin(np.arange(len(clearance)), low)
@@ -173,7 +173,7 @@ def _search_allowed(
     return outcome, parent[outcome.path], extra
 
 
-def _rounded_clearance(candidates: CandidateSet, nodes: IntArray) -> FloatArray:
+def rounded_clearance(candidates: CandidateSet, nodes: IntArray) -> FloatArray:
     """Clearance of nodes at their exported joints [m]; -inf where a filter rejects them."""
     problem, scene = candidates.problem, candidates.scene
     touch = touch_numbers(problem, scene)[candidates.nodes.candidate[nodes, 0]]

@@ -24,7 +24,7 @@ def program_with(
     problem: PlanningProblem,
     name: str,
     moves: tuple[Move, ...],
-    clearance: float,
+    clearance: float | None,
     **stamps: object,
 ) -> JointProgram:
     """A program of the cell with these moves; `clearance` [m] and `stamps` go to the remarks."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from solver.analysis.check import Check, unfinished
 from solver.analysis.feed_checks import LineFeed, cycle_of, feed_checks, line_feeds, predictions
-from solver.analysis.motion_checks import motion_checks, net_check
+from solver.analysis.motion_checks import linear_check, motion_checks, net_check
 from solver.analysis.order_checks import order_checks
 from solver.analysis.position_checks import position_checks
 from solver.analysis.trace import trace
@@ -104,13 +104,14 @@ def inspect_moves(
     """The checks of the moves themselves, wherever they come from; see `check_program`."""
     followed = trace(problem, program, monitor)
     if isinstance(followed, str):
-        return ProgramReport((unfinished("motion", "moves", followed),), len(program.moves))
+        linear = linear_check(problem.robot, program.moves)
+        return ProgramReport((unfinished("motion", "moves", followed), linear), len(program.moves))
     positions = position_checks(followed, least_clearance)
     clearance = next(check for check in positions if check.name == "clearance")
     feeds = predictions(followed)
     checks = (
         *positions,
-        *motion_checks(followed),
+        *motion_checks(followed, feeds),
         net_check(followed, clearance.value / MM_PER_M),
         *feed_checks(followed, feeds),
         *order_checks(followed, start_events),
@@ -186,6 +187,6 @@ def _clearance_statement(main: ProgramFile, checks: tuple[Check, ...]) -> list[C
     found = [check.value for check in checks if check.name == "clearance"]
     if stated is None or not found:
         return []
-    value = round(stated * MM_PER_M, 1)
-    sound = value <= found[0]
+    value = stated * MM_PER_M
+    sound = value <= found[0] + 1e-6
     return [Check("stated clearance", sound, value, found[0], "mm", "not above what was found")]

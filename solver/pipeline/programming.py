@@ -20,6 +20,7 @@ from solver.model.problem import PlanningProblem
 from solver.model.program import JointProgram, Move, Speed, rounded_joints
 from solver.model.program_settings import ContactMotion
 from solver.motion.links import linked_moves
+from solver.pipeline.planning import rounded_clearance
 from solver.pipeline.program_building import contact_moves, program_with
 from solver.pipeline.program_check import ProgramReport, inspect_moves, inspect_program
 from solver.pipeline.remarks import NO_HASH
@@ -30,8 +31,8 @@ from solver.units import MM, MM_PER_M
 OVERRIDDEN = "_OVR"
 """Ends the name of a program that was written although a check failed."""
 
-LEAST_REASON = 10
-"""Fewest characters of a reason for an override."""
+LEAST_REASON, LONGEST_REASON = 10, 200
+"""Fewest and most characters of a reason for an override."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,11 +84,15 @@ class WrittenProgram:
 
 @dataclass(frozen=True, slots=True)
 class ProgramDraft:
-    """A program as it would be written: its files as (name, text), main first, and its checks."""
+    """A program as it would be written: its files as (name, text), main first, and its checks.
+
+    `override` is the reason that it needs, None where every check passes or none was given.
+    """
 
     program: JointProgram
     files: tuple[tuple[str, str], ...]
     report: ProgramReport
+    override: str | None = None
 
 
 def draft_program(
@@ -97,17 +102,33 @@ def draft_program(
     monitor: Monitor | None = None,
 ) -> ProgramDraft:
     """Make and check a program without writing it; see `write_program`."""
-    order = order or ProgramOrder()
+    order = _stripped(order or ProgramOrder())
     problem = result.problem
     accepted, required = _required(result, order, refuse=False)
     post = post_named(order.post or problem.program.post)
-    title = (name or problem.program.name).upper()
-    program = ordered_program(result, title, order, accepted, monitor)
     options = PostOptions.of(problem.program)
-    program = with_hash(program, post, options, problem)
+    title = (name or problem.program.name).upper()
+    program = ordered_program(result, title, order, monitor)
     report = _inspected(problem, program, post, options, required, monitor)
+    override = order.override if report.failed else None
+    program = program_with(
+        problem,
+        title if override is None else title + OVERRIDDEN,
+        program.moves,
+        _found_clearance(report),
+        accepted=accepted,
+        override=override,
+    )
+    program = with_hash(program, post, options, problem)
     rendered = post.render(program, options, problem.robot)
-    return ProgramDraft(program, tuple((one.name, one.text) for one in rendered), report)
+    files = tuple((one.name, one.text) for one in rendered)
+    return ProgramDraft(program, files, report, override)
+
+
+def _found_clearance(report: ProgramReport) -> float | None:
+    """The clearance that the check of the positions found [m], None where it could not."""
+    found = [check.value for check in report.checks if check.name == "clearance"]
+    return found[0] * MM if found and np.isfinite(found[0]) else None
 
 
 def write_program(
@@ -125,38 +146,32 @@ def write_program(
     InputError
         When the order or the file's name cannot be used.
     """
-    order = order or ProgramOrder()
-    if order.override is not None:
-        order = replace(order, override=order.override.strip())
+    order = _stripped(order or ProgramOrder())
     problem = result.problem
     check_order(problem, path, order)
-    accepted, required = _required(result, order)
-    post = post_named(order.post or problem.program.post)
-    program = ordered_program(result, path.stem.upper(), order, accepted, monitor)
-    options = PostOptions.of(problem.program)
-    report = _inspected(problem, program, post, options, required, monitor)
-    override = order.override if report.failed else None
-    if report.failed and override is None:
-        raise _refusal(report)
-    if override is not None:
-        path = path.with_stem(path.stem + OVERRIDDEN)
-        program = program_with(
-            problem, path.stem.upper(), program.moves, result.sequence.least_clearance,
-            accepted=accepted, override=override,
-        )  # fmt: skip
-    program = with_hash(program, post, options, problem)
-    reports = [report]
+    required = _required(result, order)[1]
+    draft = draft_program(result, order, path.stem, monitor)
+    if draft.report.failed and draft.override is None:
+        raise _refusal(draft.report)
+    reports: list[ProgramReport] = []
 
     def verify(found: Found) -> None:
         if isinstance(found, JointProgram):
             reports.append(inspect_moves(problem, found, required, (), monitor))
         else:
             reports.append(inspect_program(problem, program_set(found), required, monitor))
-        if reports[-1].failed and override is None:
+        if reports[-1].failed and draft.override is None:
             raise _refusal(reports[-1])
 
-    written = write_verified(program, path, verify, options, post, problem.robot)
-    return WrittenProgram(written.paths, program, reports[-1], override, written.stale)
+    target = path if draft.override is None else path.with_stem(path.stem + OVERRIDDEN)
+    post = post_named(order.post or problem.program.post)
+    options = PostOptions.of(problem.program)
+    written = write_verified(draft.program, target, verify, options, post, problem.robot)
+    return WrittenProgram(written.paths, draft.program, reports[-1], draft.override, written.stale)
+
+
+def _stripped(order: ProgramOrder) -> ProgramOrder:
+    return order if order.override is None else replace(order, override=order.override.strip())
 
 
 def _refusal(report: ProgramReport) -> RefusedError:
@@ -168,18 +183,17 @@ def ordered_program(
     result: PlanningResult,
     name: str,
     order: ProgramOrder,
-    accepted: float | None = None,
     monitor: Monitor | None = None,
 ) -> JointProgram:
     """The neutral program of the result's sequence, simplified and linked as ordered."""
     problem = _with_motion(result.problem, order)
-    least = result.sequence.least_clearance
+    least = exported_clearance(result)
     passes = contact_moves(problem, rounded_joints(result.sequence.pendant))
     if order.simplify is not None:
         kept = min(least, problem.settings.safety_distance)
         passes = simplified(problem, passes, order.simplify, kept, monitor)
     moves = linked(problem, passes, monitor)
-    return program_with(problem, name, moves, least, accepted=accepted)
+    return program_with(problem, name, moves, None)
 
 
 def _with_motion(problem: PlanningProblem, order: ProgramOrder) -> PlanningProblem:
@@ -188,6 +202,11 @@ def _with_motion(problem: PlanningProblem, order: ProgramOrder) -> PlanningProbl
     if post.form is not FileForm.FANUC_CARTESIAN:
         return problem
     return replace(problem, program=replace(problem.program, contact=ContactMotion.LINEAR))
+
+
+def exported_clearance(result: PlanningResult) -> float:
+    """Least clearance of the result's sequence at its exported, rounded joints [m]."""
+    return float(rounded_clearance(result.candidates, result.sequence.nodes).min())
 
 
 def linked(
@@ -235,7 +254,7 @@ def _required(
 ) -> tuple[float | None, float]:
     """The accepted clearance as it will be stamped, and what is required [m]."""
     required = result.problem.settings.safety_distance
-    least = result.sequence.least_clearance
+    least = exported_clearance(result)
     accepted = order.accepted_clearance
     if accepted is not None and accepted < required and least < required:
         accepted = round(accepted * MM_PER_M, 3) * MM
@@ -277,15 +296,16 @@ def check_order(problem: PlanningProblem, path: Path, order: ProgramOrder) -> No
             f"{limit * MM_PER_M:g} mm; got {order.simplify * MM_PER_M:g} mm"
         )
     reason = order.override.strip() if order.override is not None else None
-    if reason is not None and len(reason) < LEAST_REASON:
+    if reason is not None and not LEAST_REASON <= len(reason) <= LONGEST_REASON:
         raise InputError(
-            f"an override needs a reason of at least {LEAST_REASON} characters, got {reason!r}"
+            f"an override needs a reason of at least {LEAST_REASON} characters and at most "
+            f"{LONGEST_REASON}, got {len(reason)}: {reason[:50]!r}"
         )
     options = PostOptions.of(problem.program)
     for one in targets:
         speed = Speed.percent(problem.program.approach_percent)
         home = Move(joints=_probe(problem), speed=speed)
-        program = program_with(problem, one.stem.upper(), (home,), 0.0, override=reason)
+        program = program_with(problem, one.stem.upper(), (home,), None, override=reason)
         post.render(program, options, problem.robot)
 
 

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import re
 
-from solver.analysis.check import down_mm
+import numpy as np
+
 from solver.errors import InputError
 from solver.io.ls_hash import HASH_REMARK
 from solver.io.ls_program import ProgramFile
@@ -31,13 +32,16 @@ _CLEARANCE = re.compile(r"[0-9]{1,4}[.][0-9]{1,3}")
 
 def head_remarks(
     problem: PlanningProblem,
-    clearance: float,
+    clearance: float | None,
     *,
     accepted: float | None = None,
     override: str | None = None,
     content: str = NO_HASH,
 ) -> tuple[str, ...]:
-    """All remarks; `clearance` [m] is the least of the contact positions, `content` the hash."""
+    """All remarks; `clearance` [m] is the least of the contact positions, `content` the hash.
+
+    A clearance that is not known, or that no pair of bodies has, is left out.
+    """
     section = problem.workpiece.section
     lines = [f"{CELL_REMARK}{problem.name}"]
     if section is not None:
@@ -46,7 +50,8 @@ def head_remarks(
     lines += _pose_remarks("UT", problem.user_tool)
     lines.append(f"{DIGEST_REMARK}{problem_digest(problem)}")
     lines.append(f"{HASH_REMARK}{content}")
-    lines.append(f"{CLEARANCE_REMARK}{down_mm(min(clearance, 9.999)):.1f} MM")
+    if clearance is not None and np.isfinite(clearance):
+        lines.append(f"{CLEARANCE_REMARK}{clearance * MM_PER_M:.1f} MM")
     if accepted is not None:
         lines.append(f"{ACCEPTED_REMARK}{accepted * MM_PER_M:.3f} MM")
     if override is None:

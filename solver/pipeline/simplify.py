@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.analysis.motion_checks import BETWEEN_ANGLE_TOLERANCE, corner_cut
+from solver.analysis.corner_checks import corner_cut
+from solver.analysis.motion_checks import BETWEEN_ANGLE_TOLERANCE
 from solver.analysis.position_checks import ANGLE_TOLERANCE, angle_near, outside
 from solver.analysis.trace import Piece, follow
 from solver.candidates.postures import check_exact_postures

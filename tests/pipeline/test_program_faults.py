@@ -130,6 +130,13 @@ FAULTS = {
         GROOVE, in_position(20, "UT : 1", "UT : 2"), "frame and tool numbers",
     ),
     "renamed program": (GROOVE, text("/PROG  GROOVE", "/PROG  GROOVY"), "program name"),
+    "lead-out left out": (ZIGZAG, without(29), "path at rounded corners (estimated)"),
+    "onto the face at full speed": (
+        GROOVE, lambda t: with_speed(t, 4, "2000mm/sec", "L"), "lead speed",
+    ),
+    "a rounded corner above the face": (
+        GROOVE, in_line(3, "FINE", "CNT100"), "links at rounded corners (estimated)",
+    ),
     "percent while grinding": (GROOVE, lambda t: with_speed(t, 20, "1%"), "feed"),
     "20 % too fast": (GROOVE, lambda t: with_speed(t, 20, "513msec"), "feed"),
     "20 % too slow": (GROOVE, lambda t: with_speed(t, 20, "740msec"), "feed"),
@@ -226,7 +233,6 @@ HASH_ALONE = {
     "first move in a millisecond": (GROOVE, lambda t: with_speed(t, 1, "1msec")),
     "link at full speed": (ZIGZAG, lambda t: with_speed(t, 31, "100%")),
     "home left out": (ZIGZAG, without(1)),
-    "lead-out left out": (ZIGZAG, without(29)),
     "no digest": (GROOVE, text("!DIGEST ", "!DIGES ")),
     "less clearance accepted": (GROOVE, text("!verify in T1", "!ACCEPTED CLEARANCE 0.001 MM")),
     "another remark": (GROOVE, text("!verify in T1", "!verified")),
