@@ -2,17 +2,41 @@
 
 from __future__ import annotations
 
-from PySide6.QtGui import QColor, QPalette
+from typing import Final
+
+from PySide6.QtGui import QColor, QFont, QFontInfo, QPalette
 from PySide6.QtWidgets import QApplication
 
 from posopt_gui.theme import Theme
 
+CHINESE_FONTS: Final = (
+    "Microsoft YaHei UI", "PingFang SC", "Noto Sans CJK SC", "Source Han Sans SC",
+    "WenQuanYi Micro Hei",
+)  # fmt: skip
+"""Fonts with the characters in their mainland forms; others would be taken from any font."""
+
+STYLED: Final = "posopt_theme"
+"""Property of the application: the theme that it has."""
+
+
+def prepare_fonts() -> None:
+    """Let Chinese characters come from a font that has them in their mainland forms.
+
+    Call it once, before the first text is drawn; Latin letters stay those of the system's font.
+    """
+    font = QApplication.font()
+    QFont.insertSubstitutions(font.family(), [QFontInfo(font).family(), *CHINESE_FONTS])
+
 
 def apply_theme(application: QApplication, theme: Theme) -> None:
     """Give the whole application the colours of a theme."""
-    application.setStyle("Fusion")
-    application.setPalette(palette(theme))
-    application.setStyleSheet(style_sheet(theme))
+    if application.property(STYLED) != theme.name:
+        if application.property(STYLED) is None:
+            # Once is enough: it goes through all widgets, as the style sheet does.
+            application.setStyle("Fusion")
+        application.setPalette(palette(theme))
+        application.setStyleSheet(style_sheet(theme))
+        application.setProperty(STYLED, theme.name)
 
 
 def palette(theme: Theme) -> QPalette:
@@ -46,52 +70,111 @@ def palette(theme: Theme) -> QPalette:
 
 
 def style_sheet(theme: Theme) -> str:
-    """Rules for docks, tabs, tool bars, fields and tables."""
+    """Rules for the frame, fields, tables and what else Qt draws."""
+    return _frame(theme) + _fields(theme) + _tables(theme)
+
+
+def _frame(theme: Theme) -> str:
+    """Menu, tool bar, panels, tabs, status bar."""
     return f"""
 QMainWindow::separator {{ background: {theme.border}; width: 1px; height: 1px; }}
-QDockWidget {{ font-weight: 600; color: {theme.text}; }}
-QDockWidget::title {{ background: {theme.window}; padding: 6px 10px; border: none; }}
+QSplitter::handle {{ background: transparent; image: none; }}
+QSplitter#middle::handle {{ background: {theme.border}; margin: 1px 0; }}
+QSplitter::handle:hover {{ background: {theme.border}; }}
+QSplitter#middle::handle:hover {{ background: {theme.accent}; }}
+QMenuBar, QStatusBar {{ background: {theme.window}; }}
+QMenuBar {{ padding: 2px 6px 0 6px; }}
+QMenuBar::item {{ background: transparent; padding: 4px 8px; border-radius: 4px; }}
+QMenuBar::item:selected {{ background: {theme.selection}; color: {theme.text}; }}
+QMenu {{ background: {theme.surface}; border: 1px solid {theme.border}; padding: 4px 0; }}
+QMenu::item {{ padding: 5px 28px 5px 24px; }}
+QMenu::item:selected {{ background: {theme.selection}; color: {theme.text}; }}
+QMenu::item:disabled {{ color: {theme.muted}; }}
+QMenu::separator {{ height: 1px; background: {theme.border}; margin: 4px 8px; }}
 QToolBar {{ background: {theme.window}; border: none; border-bottom: 1px solid {theme.border};
-    spacing: 4px; padding: 4px 8px; }}
+    spacing: 3px; padding: 3px 6px 5px 6px; }}
+QToolBar::separator {{ background: {theme.border}; width: 1px; margin: 4px 6px; }}
+QToolBar QLabel {{ color: {theme.muted}; padding: 0 4px 0 2px; }}
 QToolButton {{ padding: 4px 8px; border: 1px solid transparent; border-radius: 4px; }}
 QToolButton:hover {{ background: {theme.raised}; border-color: {theme.border}; }}
+QToolButton:focus {{ border-color: {theme.accent}; }}
 QToolButton:checked {{ background: {theme.selection}; border-color: {theme.accent}; }}
+QToolButton:disabled {{ color: {theme.muted}; }}
+QToolButton[popupMode="2"] {{ padding-right: 18px; }}
+QToolButton::menu-indicator {{ image: none; width: 0; height: 0; subcontrol-origin: padding;
+    subcontrol-position: right center; right: 6px; border-left: 4px solid {theme.window};
+    border-right: 4px solid {theme.window}; border-top: 5px solid {theme.muted}; }}
+QToolButton::menu-indicator:hover {{ border-left-color: {theme.raised};
+    border-right-color: {theme.raised}; }}
 QToolButton#primary {{ background: {theme.accent}; color: {theme.accent_text};
-    font-weight: 600; padding: 4px 14px; }}
+    font-weight: bold; padding: 4px 16px; }}
+QToolButton#primary:hover, QToolButton#primary:focus {{ border-color: {theme.text}; }}
 QToolButton#primary:disabled {{ background: {theme.raised}; color: {theme.muted}; }}
-QMenuBar, QStatusBar {{ background: {theme.window}; }}
+QToolButton#panelButton {{ padding: 2px; }}
+QLabel#panelTitle {{ font-weight: bold; color: {theme.text}; }}
 QStatusBar {{ border-top: 1px solid {theme.border}; }}
-QMenu {{ background: {theme.surface}; border: 1px solid {theme.border}; }}
-QMenu::item {{ padding: 5px 28px 5px 20px; }}
-QMenu::item:selected {{ background: {theme.selection}; color: {theme.text}; }}
+QStatusBar::item {{ border: none; }}
+QStatusBar QLabel {{ padding: 0 6px; }}
+QStatusBar QToolButton {{ padding: 1px 8px; color: {theme.muted}; }}
 QTabWidget::pane {{ border: none; border-top: 1px solid {theme.border}; }}
-QTabBar::tab {{ background: transparent; color: {theme.muted}; padding: 6px 12px; border: none;
+QTabBar::tab {{ background: transparent; color: {theme.muted}; padding: 6px 9px; border: none;
     border-bottom: 2px solid transparent; }}
 QTabBar::tab:selected {{ color: {theme.text}; border-bottom-color: {theme.accent}; }}
 QTabBar::tab:hover {{ color: {theme.text}; }}
+QTabBar::tab:focus {{ color: {theme.accent}; }}
+QProgressBar {{ background: {theme.raised}; border: none; border-radius: 2px; }}
+QProgressBar::chunk {{ background: {theme.accent}; border-radius: 2px; }}
+QToolTip {{ background: {theme.surface}; color: {theme.text}; border: 1px solid {theme.border};
+    padding: 4px; }}
+"""
+
+
+def _fields(theme: Theme) -> str:
+    """Fields, choices and buttons; arrows are corners of thick borders, as flat triangles."""
+    return f"""
 QLineEdit, QAbstractSpinBox, QComboBox, QPlainTextEdit, QTextEdit {{ background: {theme.surface};
     border: 1px solid {theme.border}; border-radius: 3px; padding: 3px 5px;
     selection-background-color: {theme.accent}; selection-color: {theme.accent_text}; }}
 QLineEdit:focus, QAbstractSpinBox:focus, QComboBox:focus, QPlainTextEdit:focus {{
     border-color: {theme.accent}; }}
+QComboBox:hover {{ border-color: {theme.muted}; }}
+QComboBox:disabled {{ color: {theme.muted}; }}
+QComboBox::drop-down {{ border: none; width: 18px; }}
+QComboBox QAbstractItemView {{ background: {theme.surface}; border: 1px solid {theme.border};
+    selection-background-color: {theme.selection}; selection-color: {theme.text}; }}
+QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ border: none; width: 16px;
+    background: transparent; }}
+QAbstractSpinBox::up-arrow, QAbstractSpinBox::down-arrow, QComboBox::down-arrow {{
+    image: none; width: 0; height: 0; border-left: 4px solid {theme.surface};
+    border-right: 4px solid {theme.surface}; }}
+QAbstractSpinBox::up-arrow {{ border-bottom: 5px solid {theme.muted}; }}
+QAbstractSpinBox::down-arrow, QComboBox::down-arrow {{ border-top: 5px solid {theme.muted}; }}
+QAbstractSpinBox::up-arrow:off, QAbstractSpinBox::up-arrow:disabled {{
+    border-bottom-color: {theme.border}; }}
+QAbstractSpinBox::down-arrow:off, QAbstractSpinBox::down-arrow:disabled {{
+    border-top-color: {theme.border}; }}
+QPushButton {{ background: {theme.raised}; border: 1px solid {theme.border}; border-radius: 4px;
+    padding: 5px 14px; }}
+QPushButton:hover, QPushButton:focus {{ border-color: {theme.accent}; }}
+QPushButton:default {{ background: {theme.accent}; color: {theme.accent_text}; }}
+QPushButton:disabled {{ color: {theme.muted}; }}
+"""
+
+
+def _tables(theme: Theme) -> str:
+    """Tables, lists and scroll bars."""
+    return f"""
 QTableView, QTreeView, QListView {{ background: {theme.surface}; border: 1px solid {theme.border};
     gridline-color: {theme.grid}; alternate-background-color: {theme.window};
     selection-background-color: {theme.selection}; selection-color: {theme.text}; }}
 QHeaderView::section {{ background: {theme.raised}; color: {theme.muted}; border: none;
-    border-right: 1px solid {theme.border}; padding: 4px 6px; font-weight: 600; }}
-QPushButton {{ background: {theme.raised}; border: 1px solid {theme.border}; border-radius: 4px;
-    padding: 5px 14px; }}
-QPushButton:hover {{ border-color: {theme.accent}; }}
-QPushButton:default {{ background: {theme.accent}; color: {theme.accent_text}; }}
-QPushButton:disabled {{ color: {theme.muted}; }}
-QProgressBar {{ background: {theme.raised}; border: none; border-radius: 2px; }}
-QProgressBar::chunk {{ background: {theme.accent}; border-radius: 2px; }}
-QToolTip {{ background: {theme.raised}; color: {theme.text}; border: 1px solid {theme.border};
-    padding: 4px; }}
+    border-right: 1px solid {theme.border}; padding: 4px 6px; font-weight: bold; }}
 QScrollBar:vertical {{ background: {theme.window}; width: 11px; margin: 0; }}
 QScrollBar::handle:vertical {{ background: {theme.border}; min-height: 24px; border-radius: 5px; }}
 QScrollBar:horizontal {{ background: {theme.window}; height: 11px; margin: 0; }}
 QScrollBar::handle:horizontal {{ background: {theme.border}; min-width: 24px;
     border-radius: 5px; }}
+QScrollBar::handle:hover {{ background: {theme.muted}; }}
 QScrollBar::add-line, QScrollBar::sub-line {{ width: 0; height: 0; }}
+QScrollBar::add-page, QScrollBar::sub-page {{ background: transparent; }}
 """

@@ -51,6 +51,8 @@ OUTCOME_COLOURS: Final[Mapping[Outcome, str]] = {
     Outcome.JOINT_LIMIT: "#E69F00",
     Outcome.SINGULAR: "#CC79A7",
     Outcome.COLLISION: "#D55E00",
+    Outcome.MARGIN: "#882255",
+    Outcome.SELF_COLLISION: "#0072B2",
 }
 
 LIGHT: Final = Theme(

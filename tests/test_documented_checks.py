@@ -15,8 +15,13 @@ from solver.io.ls_program_set import program_set
 from solver.io.ls_reader import read_program
 from solver.model.program import JointProgram
 from solver.pipeline.planning import plan
-from solver.pipeline.program_check import inspect_moves, inspect_program
-from solver.pipeline.programming import ProgramOrder, ordered_program, write_program
+from solver.pipeline.program_check import check_program, inspect_moves, inspect_program
+from solver.pipeline.programming import (
+    ProgramOrder,
+    draft_program,
+    ordered_program,
+    write_program,
+)
 from solver.units import DEG
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -55,7 +60,11 @@ def special():
     bounded = replace(problem, settings=replace(problem.settings, steps=steps))
     program = ordered_program(plan(bounded), "STEPS", ProgramOrder())
     short: JointProgram = replace(program, moves=program.moves[:1])
+    moved = replace(problem, program=replace(problem.program, offset=5))
+    ((name, text),) = draft_program(plan(moved), ProgramOrder(post="fanuc-cartesian")).files
+    accepted = text.replace("!verify in T1", "!ACCEPTED CLEARANCE 10.000 MM")
     return [
+        *check_program(moved, read_program(accepted, name), 0.05),
         *inspect_moves(bounded, program, 0.05).checks,
         *inspect_moves(bounded, short, 0.05).checks,
     ]

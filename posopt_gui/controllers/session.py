@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QThreadPool, QTimer, Signal
+from PySide6.QtCore import QObject, QThreadPool, QTimer, Signal, SignalInstance
 
 from posopt_gui.document.document import Document
 from posopt_gui.document.project import ProjectState
@@ -96,7 +96,9 @@ class Session(QObject):
         self._answer: Replanned | None = None
         self._report: ProgramReport | None = None
         self._planned_state: ProjectState | None = None
-        self._stale = False
+        self._ordered = document.state
+        self._asked: tuple[tuple[Pin, ...], tuple[Region, ...]] = ((), ())
+        self._stale = self._previewing = False
         self._place = 0.0
         self._hover: Hover | None = None
         self._timer = QTimer(self)
@@ -191,15 +193,16 @@ class Session(QObject):
 
     def open(self, state: ProjectState, *, saved: bool = True) -> None:
         """Begin with another project; nothing of the one before stays."""
-        self._plans.stop()
-        self._wishes.stop()
-        self._checks.stop()
+        for line in (self._builds, self._plans, self._wishes, self._checks):
+            line.stop()
+        self._problem = self._problem_error = self._plan_error = None
         self._result = self._answer = self._report = None
         self._planned_state = None
-        self._plan_error = None
-        self._hover = None
+        self._asked = ((), ())
         self._place = 0.0
+        self.set_hover(None)
         self.document.reset(state, saved=saved)
+        self.problem_changed.emit()
         self.result_changed.emit()
         self.check_changed.emit()
         self.cursor_changed.emit(0)
@@ -212,6 +215,7 @@ class Session(QObject):
     def plan(self) -> None:
         """Plan the current inputs; an older job is cancelled, and its answer dropped."""
         state, schemes = self.document.state, self.compared
+        self._ordered = state
         self._checks.stop()
         self._plans.submit(lambda monitor: _plan(state, schemes, monitor))
 
@@ -259,10 +263,12 @@ class Session(QObject):
         """Answer as if it were pinned, without a step in the history (while dragging)."""
         state = self.document.state
         pins = tuple(one for one in state.pins if one.waypoint != waypoint)
+        self._previewing = True
         self._ask((*pins, Pin(waypoint, lean, branch, turn)), state.regions)
 
     def end_preview(self) -> None:
         """Go back to the document's own wishes."""
+        self._previewing = False
         self._ask(self.document.state.pins, self.document.state.regions)
 
     def unpin(self, waypoint: int) -> None:
@@ -290,6 +296,7 @@ class Session(QObject):
 
     def check(self) -> None:
         """Check the program of the shown sequence, off the window's thread."""
+        self._checks.stop()
         result = self.chosen_result
         if result is None or (self._answer is not None and self._answer.sequence is None):
             return
@@ -313,7 +320,8 @@ class Session(QObject):
         if _inputs(before) != _inputs(state):
             self._timer.start()
         self._update_stale()
-        if (before.pins, before.regions) != (state.pins, state.regions) and not self._stale:
+        self._previewing = False
+        if (state.pins, state.regions) != self._asked and not self._stale:
             self._ask(state.pins, state.regions)
 
     def _update_stale(self) -> None:
@@ -324,12 +332,13 @@ class Session(QObject):
             self.stale_changed.emit(stale)
 
     def _build(self) -> None:
+        self._timer.stop()
         state = self.document.state
         self._builds.submit(lambda _: state.problem())
 
     def _built(self, problem: PlanningProblem) -> None:
         self._problem, self._problem_error = problem, None
-        self.problem_changed.emit()
+        self._announce(self.problem_changed)
         if self.live and self._stale:
             self.plan()
 
@@ -338,15 +347,17 @@ class Session(QObject):
             self._defect(error)
             return
         self._problem, self._problem_error = None, error
-        self.problem_changed.emit()
+        self._announce(self.problem_changed)
 
     def _planned(self, planned: _Planned) -> None:
+        # An answer that is still being worked out belongs to the plan before.
+        self._wishes.stop()
+        self._checks.stop()
+        self._asked = (planned.state.pins, planned.state.regions)
         self._planned_state, self._result = planned.state, planned.result
         self._answer, self._plan_error, self._report = planned.answer, None, None
-        self._place = min(self._place, self.waypoints - 1.0)
         self._update_stale()
-        self.result_changed.emit()
-        self.check_changed.emit()
+        self._announce_result()
         wishes = (planned.state.pins, planned.state.regions)
         if wishes != (self.document.state.pins, self.document.state.regions):
             self.end_preview()
@@ -356,28 +367,47 @@ class Session(QObject):
         if not isinstance(error, PosoptError):
             self._defect(error)
             return
+        self._wishes.stop()
+        self._checks.stop()
         self._plan_error = error
         self._result = self._answer = self._report = None
-        self._planned_state = self.document.state
+        self._planned_state = self._ordered
         self._update_stale()
-        self.result_changed.emit()
-        self.check_changed.emit()
+        self._announce_result()
         self.message.emit(Message("error", str(error)))
+
+    def _announce_result(self) -> None:
+        self._announce(self.result_changed, self.check_changed)
+
+    def _announce(self, *signals: SignalInstance) -> None:
+        """Tell of another plan or path; the place stays, as far as the path reaches."""
+        before, cursor = self._place, self.cursor
+        self._place = min(self._place, max(self.waypoints - 1.0, 0.0))
+        for signal in signals:
+            signal.emit()
+        if self._place != before:
+            self.place_changed.emit(self._place)
+        if self.cursor != cursor:
+            self.cursor_changed.emit(self.cursor)
 
     def _ask(self, pins: tuple[Pin, ...], regions: tuple[Region, ...]) -> None:
         result = self._result
         if result is None:
             return
+        self._asked = (pins, regions)
         self._wishes.submit(
             lambda monitor: _answer(result, pins, regions, monitor), cancel_running=False
         )
 
     def _answered(self, answer: Replanned | None) -> None:
+        self._checks.stop()
         self._answer = answer
         self._report = None
         self.result_changed.emit()
         self.check_changed.emit()
-        self.check()
+        # While a pin is being dragged the next answer is already on its way.
+        if not self._previewing:
+            self.check()
 
     def _checked(self, report: ProgramReport) -> None:
         self._report = report

@@ -36,7 +36,13 @@ def save_project(state: ProjectState, path: Path) -> None:
 
 
 def project_bytes(state: ProjectState) -> bytes:
-    """The bytes of a project file; the same state gives the same bytes."""
+    """The bytes of a project file; the same state gives the same bytes.
+
+    Raises
+    ------
+    InputError
+        When the state holds what JSON cannot say, such as an infinite number or a date.
+    """
     document = {
         "format": FORMAT,
         "version": VERSION,
@@ -60,7 +66,10 @@ def project_bytes(state: ProjectState) -> bytes:
             for one in state.regions
         ],
     }
-    return json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False).encode()
+    try:
+        return json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False).encode()
+    except (TypeError, ValueError, RecursionError) as error:
+        raise InputError(f"the project cannot be saved ({_short(error)})") from error
 
 
 def load_project(path: Path) -> ProjectState:
@@ -86,15 +95,18 @@ def read_project(data: bytes, file: str) -> ProjectState:
     """Read the content of a project file; `file` is its name for errors."""
     place = Place(file)
     try:
-        document = json.loads(data.decode("utf-8-sig"), parse_constant=_refuse_constant)
+        document = json.loads(
+            data.decode("utf-8-sig"), parse_constant=_refuse_constant, parse_float=_finite
+        )
     except (UnicodeDecodeError, ValueError, RecursionError) as error:
         raise InputError(f"is no whole posopt project ({_short(error)})", place) from error
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise InputError("is no posopt project: its 'format' is missing", place)
-    if document.get("version") != VERSION:
-        raise InputError(
-            f"has version {_short(document.get('version'))}, this posopt reads {VERSION}", place
-        )
+    version = document.get("version")
+    if isinstance(version, bool) or version != VERSION:
+        raise InputError(f"has version {_short(version)}, this posopt reads {VERSION}", place)
+    if b"\\u" in data:
+        _refuse_half_characters(document, file)
     return ProjectState(
         cell=_cell(document, file),
         files=_files(document, file),
@@ -108,6 +120,14 @@ def read_project(data: bytes, file: str) -> ProjectState:
 
 def _refuse_constant(name: str) -> float:
     raise ValueError(f"{name} is no number")
+
+
+def _finite(text: str) -> float:
+    # JSON's grammar knows numbers that are too large for a float.
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"{text[:20]} is too large for a number")
+    return value
 
 
 def _short(value: object) -> str:
@@ -125,6 +145,14 @@ def _cell(document: Mapping[str, Any], file: str) -> dict[str, Any]:
     if _depth(cell) > DEPTH_LIMIT:
         raise InputError("tables are nested too deeply", Place(file, key="cell"))
     return cell
+
+
+def _refuse_half_characters(data: object, file: str) -> None:
+    """JSON may escape one half of a character, which no file can hold."""
+    try:
+        json.dumps(data, ensure_ascii=False).encode()
+    except UnicodeEncodeError as error:
+        raise InputError("a text holds half a character", Place(file)) from error
 
 
 def _depth(value: Any, level: int = 1) -> int:
@@ -194,9 +222,12 @@ def _optional(row: Any, name: str, key: str, file: str) -> int | None:
 
 def _number(row: Any, name: str, key: str, file: str) -> float:
     value = _value(row, name, key, file)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float):
         raise _expected(file, f"{key}.{name}", "a number", value)
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError as error:
+        raise _expected(file, f"{key}.{name}", "a number", value) from error
 
 
 def _text(value: Any, key: str, file: str) -> str:

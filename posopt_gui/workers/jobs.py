@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 import time
 from collections.abc import Callable
@@ -15,6 +16,9 @@ from solver.progress import Monitor
 
 REPORT_INTERVAL = 0.05
 """Least time between two reports of progress [s]: more would only flood the event queue."""
+
+LOG = logging.getLogger("posopt")
+"""Where defects of the window's own leave their traceback."""
 
 Work = Callable[[Monitor], Any]
 
@@ -42,7 +46,11 @@ class _JobMonitor:
         now = time.monotonic()
         if now - self._last >= REPORT_INTERVAL or done >= total:
             self._last = now
-            self._relay.progress.emit(self._number, stage, done, total)
+            try:
+                self._relay.progress.emit(self._number, stage, done, total)
+            except RuntimeError:
+                # The window is gone: nobody waits for the answer.
+                self._stop.set()
 
     def cancelled(self) -> bool:
         return self._stop.is_set()
@@ -81,31 +89,34 @@ class JobLine(QObject):
 
     @property
     def busy(self) -> bool:
-        """Whether a job runs whose answer is wanted."""
-        return self._running is not None and not self._running.cancelled()
+        """Whether a job runs, or waits, whose answer is wanted."""
+        running = self._running
+        return self._waiting is not None or (running is not None and not running.cancelled())
 
     def submit(self, work: Work, *, cancel_running: bool = True) -> None:
         """Run `work` as soon as the job before it has ended."""
         if self._closed:
             return
+        was_busy = self.busy
         self._newest += 1
-        if self._running is not None:
+        if self._running is None:
+            self._start(work, self._newest)
+        else:
             if cancel_running:
                 self._running.stop()
             self._waiting = _Waiting(work, self._newest)
-            return
-        self._start(work, self._newest)
-        self.busy_changed.emit(True)
+        if not was_busy:
+            self.busy_changed.emit(True)
 
     def stop(self) -> None:
         """Cancel the running job and forget the waiting one."""
+        was_busy = self.busy
         self._waiting = None
         self._newest += 1
         if self._running is not None:
-            was_busy = self.busy
             self._running.stop()
-            if was_busy:
-                self.busy_changed.emit(False)
+        if was_busy:
+            self.busy_changed.emit(False)
 
     def close(self) -> None:
         """Cancel everything and take no more; the pool still has to be waited for."""
@@ -123,6 +134,7 @@ class JobLine(QObject):
             except (Cancelled, PosoptError) as error:
                 _send(relay.failed, number, error)
             except Exception as error:
+                LOG.exception("a job has failed by a defect")
                 _send(relay.failed, number, error)
             else:
                 _send(relay.done, number, answer)
@@ -148,8 +160,6 @@ class JobLine(QObject):
         waiting, self._waiting = self._waiting, None
         if waiting is not None and not self._closed:
             self._start(waiting.work, waiting.number)
-            if not was_busy:
-                self.busy_changed.emit(True)
         elif was_busy:
             self.busy_changed.emit(False)
         # An answer that is no longer wanted is dropped.

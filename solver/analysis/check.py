@@ -30,7 +30,8 @@ class Check:
         """The check as a line for people."""
         word = "ok    " if self.passed else "FAILED"
         limit = f"{self.limit:.4g}, assumed" if self.assumed else f"{self.limit:.4g}"
-        text = f"{word} {self.name}: {self.value:.4g} {self.unit} (limit {limit})"
+        value = "not known" if np.isnan(self.value) else f"{self.value:.4g} {self.unit}"
+        text = f"{word} {self.name}: {value} (limit {limit})"
         return f"{text}, {self.detail}" if self.detail else text
 
 

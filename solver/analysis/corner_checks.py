@@ -11,12 +11,9 @@ import numpy as np
 from solver.analysis.check import Check
 from solver.analysis.position_checks import at
 from solver.analysis.trace import NO_SPAN, ProgramTrace
+from solver.motion.corners import corner_cut, turning
 from solver.motion.feed import FeedPrediction
-from solver.units import MM, MM_PER_M
-
-_CUT_SPEEDS = (0.0, 0.2, 0.5, 1.0)
-_CUTS = (0.0, 1.9 * MM, 4.9 * MM, 11.1 * MM)
-"""Measured speeds [m/s] and what CNT50 cuts from a right-angled corner there [m]."""
+from solver.units import MM_PER_M
 
 
 def corner_checks(trace: ProgramTrace, predicted: tuple[FeedPrediction, ...]) -> tuple[Check, ...]:
@@ -70,25 +67,6 @@ def cut_at(trace: ProgramTrace, predicted: tuple[FeedPrediction, ...], number: i
     cnt = trace.program.moves[number].cnt
     if cnt is None or not 0 < number < len(trace.program.moves) - 1:
         return 0.0
-    moved = trace.poses[number - 1 : number + 2, :3, 3]
-    before, after = np.diff(moved, axis=0)
-    lengths = float(np.linalg.norm(before)), float(np.linalg.norm(after))
-    if min(lengths) == 0.0:
-        return 0.0
-    cosine = np.clip(float(before @ after) / (lengths[0] * lengths[1]), -1.0, 1.0)
+    angle = turning(trace.poses[number - 1 : number + 2, :3, 3])
     speed = max(predicted[number - 1].fastest, predicted[number].fastest)
-    return corner_cut(float(np.arccos(cosine)), cnt, speed)
-
-
-def corner_cut(angle: float, cnt: int, speed: float) -> float:
-    """How far a rounded corner passes by its position [m].
-
-    Measured on an M-20iD/25 at right angles: CNT50 cuts 1.9, 4.9 and 11.1 mm at 200, 500 and
-    1000 mm/s, and CNT100 about 2.4 times that. Taken as proportional to CNT below 50, and to
-    the sine of half the change of direction (`angle` [rad]); faster than measured, as the speed.
-    """
-    at_fifty = float(np.interp(speed, _CUT_SPEEDS, _CUTS))
-    if speed > _CUT_SPEEDS[-1]:
-        at_fifty *= speed / _CUT_SPEEDS[-1]
-    share = float(np.interp(cnt, (0.0, 50.0, 100.0), (0.0, 1.0, 2.4)))
-    return float(at_fifty * share * np.sin(angle / 2.0) / np.sin(np.pi / 4.0))
+    return corner_cut(angle, cnt, speed)

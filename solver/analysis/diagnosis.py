@@ -52,10 +52,21 @@ _ADVICE = {
 
 
 class InfeasiblePathError(PlanningError):
-    """No sequence: `empty` lists layers without candidates, `cut` where steps are too large."""
+    """No sequence: `empty` lists layers without candidates, `cut` where steps are too large.
 
-    def __init__(self, empty: tuple[EmptyLayer, ...], waypoints: int, cut: Cut | None) -> None:
-        self.empty, self.cut = empty, cut
+    `waypoints` is the number of empty layers, `candidates` what was tried, None where it is not
+    at hand.
+    """
+
+    def __init__(
+        self,
+        empty: tuple[EmptyLayer, ...],
+        waypoints: int,
+        cut: Cut | None,
+        candidates: CandidateSet | None = None,
+    ) -> None:
+        self.empty, self.waypoints, self.cut = empty, waypoints, cut
+        self.candidates = candidates
         if empty:
             more = f"; {waypoints} waypoints in all have none" if waypoints > 1 else ""
             message = f"no sequence: {empty[0]}{more}; {_ADVICE[empty[0].missed.filter]}"
@@ -84,8 +95,8 @@ def no_sequence(
     empty = np.flatnonzero(np.diff(graph.offsets) == 0)
     if len(empty):
         layers = tuple(_empty_layer(candidates, int(w)) for w in empty[:explained])
-        return InfeasiblePathError(layers, len(empty), None)
-    return InfeasiblePathError((), 0, diagnose_cut(graph))
+        return InfeasiblePathError(layers, len(empty), None, candidates)
+    return InfeasiblePathError((), 0, diagnose_cut(graph), candidates)
 
 
 def _empty_layer(candidates: CandidateSet, waypoint: int) -> EmptyLayer:

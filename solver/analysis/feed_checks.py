@@ -10,11 +10,11 @@ import numpy as np
 from solver.analysis.check import Check
 from solver.analysis.position_checks import at
 from solver.analysis.trace import ProgramTrace
-from solver.model.program import SpeedUnit
+from solver.model.program import MotionKind, Move, SpeedUnit
 from solver.model.toolpath import Role
 from solver.motion.cycle_time import CycleTime, cycle_time
 from solver.motion.feed import FeedPrediction, predict
-from solver.units import DEG_PER_RAD, MM_PER_M
+from solver.units import DEG_PER_RAD, MM, MM_PER_M
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +31,12 @@ class LineFeed:
     prediction: FeedPrediction
     held: bool
     in_percent: bool
+
+
+CLOSE = 2.0 * MM
+"""Length of a move below which whole milliseconds and rounded joints change its speed [m]."""
+
+_FEWER = "fewer positions help (--simplify TOL, or a coarser path)"
 
 
 def predictions(trace: ProgramTrace) -> tuple[FeedPrediction, ...]:
@@ -73,6 +79,7 @@ def feed_checks(trace: ProgramTrace, predicted: tuple[FeedPrediction, ...]) -> l
     return [
         _feed_check(trace, line_feeds(trace, predicted)),
         _lead_check(trace, predicted),
+        _link_speed_check(trace),
         _speed_check(trace, predicted),
         *_step_checks(trace),
     ]
@@ -94,6 +101,13 @@ def _feed_check(trace: ProgramTrace, lines: tuple[LineFeed, ...]) -> Check:
         detail += f"; {len(percent)} contact moves in % of the joint speed, first {place}"
     elif missed:
         detail += f"; {len(missed)} lines cannot hold it, first {_words(trace, missed[0])}"
+    stops = [
+        n
+        for n in np.flatnonzero(trace.contact[:-1] & trace.contact[1:]) + 1
+        if trace.program.moves[n].cnt is None and not trace.program.moves[n].events
+    ]
+    if stops:
+        detail += f"; it stops {len(stops)} times on the way, first at {at(trace, int(stops[0]))}"
     value = 100.0 * _feed_error(worst)
     waypoint = trace.waypoint_of(worst.move + 1)
     return Check("feed", not missed and not percent, value, limit, unit, detail, waypoint)
@@ -111,7 +125,49 @@ def _lead_check(trace: ProgramTrace, predicted: tuple[FeedPrediction, ...]) -> C
         if share > largest:
             largest, where = share, f"on the way to {at(trace, span.first)}"
             waypoint = span.waypoint
-    return Check("lead speed", largest <= limit, largest, limit, "% of the feed", where, waypoint)
+    return Check(
+        "lead speed", largest <= limit + 1e-6, largest, limit, "% of the feed", where, waypoint
+    )
+
+
+def _link_speed_check(trace: ProgramTrace) -> Check:
+    """Off the face no line asks for more than the cell's speeds, and the first motion is joint.
+
+    Nobody knows where the first motion begins, so that only a slow joint move is accepted.
+    """
+    settings = trace.problem.program
+    percent = settings.approach_percent if settings.links is None else settings.links.percent
+    linear = None if settings.links is None else settings.links.speed
+    largest, where = 0.0, "no line"
+    for number, move in enumerate(trace.program.moves):
+        if number and trace.contact[number - 1]:
+            continue
+        allowed = linear
+        if linear is not None and number and trace.touch[number - 1] >= 0:
+            # The ramps of a lead go at the feed, however fast it is.
+            beside = max(int(trace.span_of[number - 1]), int(trace.span_of[number]))
+            allowed = max(linear, trace.spans[beside].which.feed)
+        share = _link_share(move, percent, allowed, first=number == 0)
+        if share > largest:
+            largest, where = share, at(trace, number)
+    detail = f"at {where}; the way to the first position is not checked"
+    limit = 100.0
+    return Check(
+        "link speed", largest <= limit + 1e-6, largest, limit, "% of the cell's", detail,
+    )  # fmt: skip
+
+
+def _link_share(move: Move, percent: int, linear: float | None, *, first: bool) -> float:
+    """What a line asks for, as a share [%] of what the cell allows off the face."""
+    unit, value = move.speed.unit, move.speed.value
+    if first and (move.kind is not MotionKind.JOINT or unit is not SpeedUnit.PERCENT):
+        return np.inf
+    if unit is SpeedUnit.PERCENT:
+        return 100.0 * value / percent
+    if unit is SpeedUnit.LINEAR and linear is not None:
+        return 100.0 * value / linear
+    # A time, or a speed where the cell states none: the check of joint speeds has it.
+    return 0.0
 
 
 def _feed_error(line: LineFeed) -> float:
@@ -128,7 +184,8 @@ def _asked(lines: tuple[LineFeed, ...]) -> str:
 def _words(trace: ProgramTrace, line: LineFeed) -> str:
     place = at(trace, line.move + 1)
     if line.prediction.holds:
-        return place
+        close = line.prediction.length < CLOSE
+        return f"{place}: so close together, roundings change it; {_FEWER}" if close else place
     return (
         f"{place}: J{line.prediction.joint + 1} allows at most "
         f"{np.floor(line.prediction.best * MM_PER_M * 10.0) / 10.0:.1f} mm/s"

@@ -51,6 +51,11 @@ def _event_check(trace: ProgramTrace, start_events: tuple[Event, ...]) -> Check:
     """Between the passes and at each waypoint exactly the events that the cell asks for."""
     wrong = 0
     detail = "spindle, outputs, dwells and calls as the cell asks"
+    for move in trace.program.moves:
+        if move.events and move.cnt is not None:
+            wrong += 1
+            detail = f"{move.source or 'a move'}: what happens there needs FINE, not CNT{move.cnt}"
+            break
     for where, expected, found in _event_places(trace, start_events):
         if expected == found:
             continue

@@ -55,13 +55,18 @@ def find_spans(problem: PlanningProblem, positions: FloatArray) -> tuple[Span, .
     wanted = problem.waypoint_poses[:, :3, 3]
     starts = np.cumsum([0, *map(len, passes)])
     ends: list[int] = []
+    late: list[bool] = []
     for number, one in enumerate(passes):
         ends.append(int(starts[number]))
+        late.append(False)
         if len(one) > 1:
             ends.append(int(starts[number + 1]) - 1)
+            late.append(True)
     if len(positions) < len(ends):
         return None
-    found = dict(zip(ends, match(positions, wanted[ends], strictly=True).tolist(), strict=True))
+    # A path that meets its own end again runs from the first visit to the last.
+    rows = match(positions, wanted[ends], strictly=True, late=late)
+    found = dict(zip(ends, rows.tolist(), strict=True))
     spans = []
     for number, one in enumerate(passes):
         begin, end = int(starts[number]), int(starts[number + 1])

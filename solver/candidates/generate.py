@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -29,6 +32,9 @@ from solver.transforms import (
 
 POSES_PER_CALL = 256
 """Tool poses a kernel call evaluates, so that it returns within some 20 ms."""
+
+EXPANDED_PER_CALL = 16 * POSES_PER_CALL
+"""Tool poses whose nodes a kernel call writes."""
 
 CANDIDATE_LIMIT = 4_000_000
 """Most branch candidates of one problem; each takes about 75 bytes."""
@@ -127,8 +133,21 @@ def touch_numbers(problem: PlanningProblem, scene: CollisionScene) -> IntArray:
     return np.array(numbers, np.int64)[problem.toolpath.pass_index]
 
 
-def generate(problem: PlanningProblem, monitor: Monitor | None = None) -> CandidateSet:
-    """Solve and filter every candidate of the problem."""
+def usable_cores() -> int:
+    """Cores that this process may run on."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def generate(
+    problem: PlanningProblem, monitor: Monitor | None = None, *, threads: int | None = None
+) -> CandidateSet:
+    """Solve and filter every candidate of the problem.
+
+    The kernels run on `threads` threads, by default one a core; the result is the same to the bit.
+    """
+    threads = usable_cores() if threads is None else threads
     monitor = monitor or SilentMonitor()
     settings = problem.settings
     if not kernels_are_cached():
@@ -151,16 +170,15 @@ def generate(problem: PlanningProblem, monitor: Monitor | None = None) -> Candid
     world = np.ascontiguousarray(problem.waypoint_poses[:, :3])
     robot = problem.robot
     limits = np.ascontiguousarray(problem.joint_limits)
-    space = np.empty((representative_capacity(problem.joint_limits), 6))
+    capacity = representative_capacity(problem.joint_limits)
     principal = settings.turns is Turns.PRINCIPAL
     arm = np.array(robot.arm_lengths)
     convention = robot.pendant_from_model
-    total = shape[0] * shape[1]
-    for begin in range(0, total, POSES_PER_CALL):
-        checkpoint(monitor, "candidates", begin, total)
+
+    def evaluate(begin: int, end: int) -> None:
         evaluate_poses(
             begin,
-            min(begin + POSES_PER_CALL, total),
+            end,
             world,
             local,
             touch,
@@ -176,14 +194,46 @@ def generate(problem: PlanningProblem, monitor: Monitor | None = None) -> Candid
             outcome,
             clearance,
             turns,
-            space,
+            np.empty((capacity, 6)),
         )
+
+    _in_pieces("candidates", shape[0] * shape[1], POSES_PER_CALL, evaluate, monitor, threads)
     if scene.meshes:
         MeshChecker(scene).apply(joints, touch, arm, outcome, clearance, monitor)
-    nodes = _expand(problem, joints, outcome, turns, clearance, monitor)
+    nodes = _expand(problem, joints, outcome, turns, clearance, monitor, threads)
     for array in (joints, outcome, turns, clearance):
         array.setflags(write=False)
     return CandidateSet(problem, scene, angles, branches, joints, outcome, turns, clearance, nodes)
+
+
+def _in_pieces(
+    stage: str,
+    total: int,
+    size: int,
+    work: Callable[[int, int], None],
+    monitor: Monitor,
+    threads: int,
+) -> None:
+    """Call `work` with the begin and end of pieces of 0..total, each of which stands alone.
+
+    The first piece runs in the calling thread, which compiles what is not compiled yet.
+    """
+    begins = range(0, total, size)
+    if threads < 2 or len(begins) < 3:
+        for begin in begins:
+            checkpoint(monitor, stage, begin, total)
+            work(begin, min(begin + size, total))
+        return
+    checkpoint(monitor, stage, 0, total)
+    work(0, size)
+    pool = ThreadPoolExecutor(min(threads, len(begins) - 1))
+    try:
+        waiting = [pool.submit(work, begin, min(begin + size, total)) for begin in begins[1:]]
+        for begin, piece in zip(begins[1:], waiting, strict=True):
+            checkpoint(monitor, stage, begin, total)
+            piece.result()
+    finally:
+        pool.shutdown(cancel_futures=True)
 
 
 def _expand(
@@ -193,40 +243,43 @@ def _expand(
     turns: NDArray[np.uint8],
     clearance: FloatArray,
     monitor: Monitor,
+    threads: int,
 ) -> Nodes:
     kept = np.where(outcome == Outcome.FEASIBLE, turns, 0)
-    per_layer = kept.sum(axis=(1, 2), dtype=np.int64)
-    offsets = np.concatenate([[0], np.cumsum(per_layer)]).astype(np.int64)
+    per_pose = kept.sum(axis=2, dtype=np.int64)
+    # The first node of every tool pose, and so of every piece of work.
+    first = np.concatenate([[0], np.cumsum(per_pose)]).astype(np.int64)
+    offsets = first[:: outcome.shape[1]].copy()
     count = int(offsets[-1])
     model, pendant = np.empty((count, 6)), np.empty((count, 6))
     node_clearance = np.empty(count)
     candidate = np.empty((count, 4), np.int32)
     robot = problem.robot
-    space = np.empty((representative_capacity(problem.joint_limits), 6))
-    total = outcome.shape[0] * outcome.shape[1]
-    convention = robot.pendant_from_model
+    capacity = representative_capacity(problem.joint_limits)
     limits = np.ascontiguousarray(problem.joint_limits)
-    row = 0
-    for begin in range(0, total, 16 * POSES_PER_CALL):
-        checkpoint(monitor, "nodes", begin, total)
-        row = expand_nodes(
+
+    def expand(begin: int, end: int) -> None:
+        expand_nodes(
             begin,
-            min(begin + 16 * POSES_PER_CALL, total),
+            end,
             joints,
             outcome,
             clearance,
-            convention,
+            robot.pendant_from_model,
             robot.model_from_pendant,
             limits,
             robot.elbow_limits,
             problem.settings.turns is Turns.PRINCIPAL,
-            space,
-            row,
+            np.empty((capacity, 6)),
+            int(first[begin]),
             model,
             pendant,
             node_clearance,
             candidate,
         )
+
+    poses = outcome.shape[0] * outcome.shape[1]
+    _in_pieces("nodes", poses, EXPANDED_PER_CALL, expand, monitor, threads)
     for array in (model, pendant, node_clearance, candidate, offsets):
         array.setflags(write=False)
     return Nodes(candidate, model, pendant, node_clearance, offsets)

@@ -38,6 +38,9 @@ def read_program(table: Table | None) -> ProgramSettings:
     if table is None:
         return default
     posts = tuple(POSTS)
+    on = table.text("spindle_on", default.spindle_on)
+    if on == table.text("spindle_off", default.spindle_off):
+        raise table.error("spindle_off", f"expected another program than spindle_on, found {on!r}")
     return ProgramSettings(
         name=_pattern(
             table, "name", default.name, PROGRAM_NAME,

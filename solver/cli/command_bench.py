@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from dataclasses import asdict
 
+from solver.cli.arguments import positive_number
 from solver.cli.output import emit_json, say
 from solver.errors import InputError
 
-HELP = "measure planning on the shipped cells, and the search against a plain Python A*"
+HELP = "measure planning on the shipped cells, and the search against its peers"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,15 +25,85 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--long", action="store_true", help="also plan both cells with 5,000 waypoints"
     )
+    parser.add_argument(
+        "--peers",
+        action="store_true",
+        help="instead: searches, inverse kinematics and distances beside networkx, scipy, "
+        "py-opw-kinematics, python-fcl and coal (Linux)",
+    )
+    sizes = parser.add_mutually_exclusive_group()
+    sizes.add_argument(
+        "--small", action="store_true", help="with --peers: two tiny graphs, to see that all runs"
+    )
+    sizes.add_argument(
+        "--sizes",
+        nargs="+",
+        metavar="NxLxB",
+        help="with --peers: graphs of N waypoints, L leans and B branches, or NxLxMxB with M leads "
+        "(default 50x51x1 50x51x8 500x51x8 5000x51x8 200x51x21x8)",
+    )
+    parser.add_argument(
+        "--time-limit",
+        default="120",
+        metavar="S",
+        help="with --peers: processor time of one search [s] (default 120)",
+    )
+    parser.add_argument(
+        "--memory-limit",
+        default="8",
+        metavar="GB",
+        help="with --peers: memory of one search [GB] (default 8)",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
     """Measure and print."""
+    if not 1 <= options.repeats <= 1000:
+        raise InputError(f"--repeats lies in 1..1000, got {options.repeats}")
+    if options.peers:
+        return _run_peers(options)
+    if options.small or options.sizes:
+        raise InputError("--small and --sizes belong to --peers")
+    return _run_plans(options)
+
+
+def _run_peers(options: argparse.Namespace) -> int:
+    """Measure beside others' packages."""
+    if sys.platform != "linux":
+        raise InputError("--peers bounds the memory of its processes as only Linux can")
+    if options.long:
+        raise InputError("--long and --peers do not go together; use --sizes")
+    from solver.benchmarks.peers import measure_peers
+    from solver.benchmarks.peers_graphs import SMALL_SIZES, STANDARD_SIZES, parse_size
+    from solver.benchmarks.peers_process import GIGABYTE, Bounds
+    from solver.benchmarks.peers_report import peers_document, peers_lines
+
+    standard = SMALL_SIZES if options.small else STANDARD_SIZES
+    asked = tuple(parse_size(text) for text in options.sizes or ())
+    bounds = Bounds(
+        positive_number(options.time_limit, "--time-limit"),
+        positive_number(options.memory_limit, "--memory-limit") * GIGABYTE,
+        options.repeats,
+    )
+    tables = measure_peers(
+        asked or standard,
+        bounds,
+        small=options.small,
+        tell=lambda text: print(text, file=sys.stderr),
+    )
+    if options.as_json:
+        emit_json(peers_document(tables), options.as_json)
+    if options.as_json != "-":
+        for line in peers_lines(tables):
+            say(line)
+    return 0
+
+
+def _run_plans(options: argparse.Namespace) -> int:
+    """Measure planning, and the search against a plain Python A*."""
     from solver.benchmarks.measure import all_branches, lengthened, time_peer, time_plan
     from solver.catalog import load_cell
 
-    if not 1 <= options.repeats <= 1000:
-        raise InputError(f"--repeats lies in 1..1000, got {options.repeats}")
     cells = [all_branches(load_cell(name)) for name in ("groove_paper", "groove_hw300")]
     timings = [time_plan(problem, options.repeats) for problem in cells]
     if options.long:

@@ -142,6 +142,9 @@ def _report(written: WrittenProgram, *, needless: bool) -> None:
     names = ", ".join(map(str, written.paths))
     failed = len(written.report.failed)
     count = len(written.checks)
+    if written.stale:
+        stale = ", ".join(map(str, written.stale))
+        say(f"parts of an earlier program still lie there, nothing calls them: {stale}")
     if written.override is not None:
         say(
             f"wrote {names} although {failed} of {count} checks failed: override "

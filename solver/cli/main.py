@@ -11,7 +11,7 @@ from importlib import import_module
 from solver.cli.arguments import ExactParser
 from solver.errors import Cancelled, PosoptError
 
-COMMANDS = ("plan", "check", "fk", "ik", "distance", "list", "bench", "doctor")
+COMMANDS = ("plan", "check", "fk", "ik", "distance", "list", "bench", "study", "doctor")
 """Every command is the module `solver.cli.command_NAME` with `add_arguments` and `run`."""
 
 INTERRUPTED = 130

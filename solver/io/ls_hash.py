@@ -19,6 +19,8 @@ def content_hash(files: Iterable[ProgramFile]) -> str:
     for file in files:
         groups = file.attributes.get("DEFAULT_GROUP", "")
         digest.update(f"program {file.name} {file.kind} {groups}\n".encode())
+        for line in file.application:
+            digest.update(f"application {line}\n".encode())
         for one in file.instructions:
             if not one.text.startswith(f"!{HASH_REMARK}"):
                 digest.update(f"{' '.join(one.text.split())}\n".encode())

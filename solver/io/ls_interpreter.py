@@ -142,7 +142,17 @@ class _Walk:
                 self._log.add(
                     FindingKind.NAME, f"called as {name}, but it holds program {file.name}", place
                 )
-            groups = file.attributes.get("DEFAULT_GROUP", "").split(",")[1:]
+            for line in file.application:
+                self._log.add(
+                    FindingKind.FLOW,
+                    f"/APPL says {line[:40]!r}, which can change the motion",
+                    place,
+                )
+            first, *groups = file.attributes.get("DEFAULT_GROUP", "1").split(",")
+            if file.moves and first.strip() != "1":
+                self._log.add(
+                    FindingKind.GROUPS, "DEFAULT_GROUP leaves out the arm, which moves", place
+                )
             if any(one.strip() not in {"*", ""} for one in groups):
                 self._log.add(
                     FindingKind.GROUPS, "DEFAULT_GROUP names more motion groups than the arm", place
@@ -207,6 +217,9 @@ class _Walk:
             case Selection(what=what, number=number):
                 self._selected[what] = (number, line.place)
             case Payload(number=number):
+                if self._moves and not self._payloads:
+                    sentence = "a payload is selected after the first motion"
+                    self._log.add(FindingKind.PAYLOAD, sentence, line.place)
                 self._payloads[number] = None
                 if len(self._payloads) > 1:
                     numbers = ", ".join(map(str, self._payloads))

@@ -194,6 +194,8 @@ class ProgramFile:
     utool: int | None
     instructions: tuple[Instruction, ...]
     positions: Mapping[int, Position]
+    application: tuple[str, ...] = ()
+    """Entries of /APPL, which can change how the robot moves."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "attributes", MappingProxyType(dict(self.attributes)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -102,6 +103,15 @@ def _program_files(folder: Path) -> dict[str, tuple[Path, ...]]:
     return found
 
 
+_STILL = re.compile(r"!.*|--.*|//.*|(DO|RO|GO|F)\[.*|WAIT .*|END|MESSAGE.*|")
+"""Instructions that neither move the robot nor change how it is moved."""
+
+
+def is_event(file: ProgramFile) -> bool:
+    """Whether a called program only switches and waits, and so is an event of its caller."""
+    return not file.moves and all(_STILL.fullmatch(one.text.strip()) for one in file.instructions)
+
+
 def _completed(main: ProgramFile, find: Callable[[str, Place], ProgramFile | None]) -> ProgramSet:
     name = main.name.upper()
     programs = {name: main}
@@ -119,7 +129,7 @@ def _completed(main: ProgramFile, find: Callable[[str, Place], ProgramFile | Non
                 raise InputError(f"the programs call each other in a circle: {circle}", place)
             if callee not in programs and callee not in unresolved:
                 file = find(callee, place)
-                if file is None:
+                if file is None or is_event(file):
                     unresolved[callee] = None
                 else:
                     programs[callee] = file

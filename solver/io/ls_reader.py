@@ -94,6 +94,7 @@ def read_program(data: str | bytes, file: str) -> ProgramFile:
         utool=_first_selection(instructions, "UTOOL_NUM"),
         instructions=instructions,
         positions=positions,
+        application=_application(source),
     )
 
 
@@ -157,6 +158,20 @@ def _sections(source: SourceText) -> dict[str, _Section]:
     if source.text[rest.start : rest.end].strip(" \t\n"):
         raise InputError("text after /END", source.place(rest.start))
     return sections
+
+
+def _application(source: SourceText) -> tuple[str, ...]:
+    """The lines of all /APPL sections that say something."""
+    inside, lines = False, []
+    for start, end in source.lines(0, len(source.text)):
+        heading = _HEADING.match(source.text, start, end)
+        if heading is not None:
+            if heading[1] == "MN":
+                break
+            inside = heading[1] == "APPL"
+        elif inside:
+            lines.append(source.text[start:end].strip(" \t\n"))
+    return tuple(line for line in lines if line)
 
 
 def _program_line(source: SourceText, section: _Section) -> tuple[str, str]:

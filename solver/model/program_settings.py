@@ -46,7 +46,8 @@ class LinkSettings:
         The direction of approach and retract.
     lead_in, lead_in_height : float
         The tool comes onto the face while moving: from a point this far before the first
-        waypoint, against the travel, and this high above it. A length of 0 leaves it out.
+        waypoint, against the travel, and this high above it. Both 0 leave it out; what is not
+        free is shortened.
     lead_out, lead_out_height : float
         The same behind the last waypoint.
     height : float

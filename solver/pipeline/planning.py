@@ -61,7 +61,7 @@ def plan(
     """
     monitor = monitor or SilentMonitor()
     candidates = generate(problem, monitor)
-    graph = layered_graph(candidates)
+    graph = free = layered_graph(candidates)
     if np.any(np.diff(graph.offsets) == 0):
         raise no_sequence(candidates, graph)
     schemes = list(dict.fromkeys([problem.settings.scheme, *compare]))
@@ -77,7 +77,7 @@ def plan(
                 sequences[scheme], extra, hard = exact_sequence(candidates, graph, monitor)
             met = hard >= problem.settings.safety_distance
         else:
-            sequences[scheme] = paper_sequence(candidates, graph, scheme, monitor)
+            sequences[scheme] = paper_sequence(candidates, free, scheme, monitor)
     if Scheme.EXACT not in sequences:
         met = sequences[problem.settings.scheme].least_clearance >= hard
     extra.setflags(write=False)

@@ -10,21 +10,34 @@ from solver.analysis.feed_checks import LineFeed, cycle_of, feed_checks, line_fe
 from solver.analysis.motion_checks import linear_check, motion_checks, net_check
 from solver.analysis.order_checks import order_checks
 from solver.analysis.position_checks import position_checks
+from solver.analysis.spans import find_spans
 from solver.analysis.trace import trace
 from solver.errors import InputError, RefusedError
-from solver.io.ls_findings import TIME_ONLY, FindingKind
+from solver.io.ls_findings import FindingKind
 from solver.io.ls_hash import content_hash, stated_hash
 from solver.io.ls_interpreter import Interpretation, interpret
 from solver.io.ls_program import ProgramFile
 from solver.io.ls_program_set import ProgramSet, program_set
+from solver.kinematics.arm import forward
 from solver.model.problem import PlanningProblem
 from solver.model.program import JointProgram
 from solver.model.toolpath import Event
 from solver.motion.cycle_time import CycleTime
 from solver.pipeline.digest import problem_digest
-from solver.pipeline.remarks import CLEARANCE_REMARK, DIGEST_REMARK, remark_value, stated_clearance
+from solver.pipeline.remarks import (
+    ACCEPTED_REMARK,
+    CLEARANCE_REMARK,
+    DIGEST_REMARK,
+    POSE_REMARK,
+    pose_remarks,
+    remark_value,
+    stated_clearance,
+)
 from solver.progress import Monitor
 from solver.units import MM_PER_M
+
+_NOTED = {FindingKind.WAITING}
+"""Waiting for a signal leaves the way and the events as they are."""
 
 _FRAMES = {FindingKind.FRAME_SELECTION, FindingKind.FRAME_CONFLICT}
 
@@ -90,8 +103,24 @@ def inspect_program(
     if not flow.passed:
         return ProgramReport(tuple(head), count)
     found = inspect_moves(problem, read.program, least_clearance, read.start_events, monitor)
+    if problem.program.offset is not None:
+        head.append(_offset_check(problem, read))
     stated = _clearance_statement(programs.main, found.checks)
     return replace(found, checks=(*head, *found.checks, *stated))
+
+
+def restated(
+    report: ProgramReport, problem: PlanningProblem, programs: ProgramSet
+) -> ProgramReport:
+    """The report with what the program says of itself compared again; its moves are the same."""
+    stated = [
+        _name_check(programs),
+        *_stated_checks(problem, programs),
+        *_clearance_statement(programs.main, report.checks),
+    ]
+    fresh = {check.name: check for check in stated}
+    checks = [fresh.pop(check.name, check) for check in report.checks]
+    return replace(report, checks=(*checks, *fresh.values()))
 
 
 def inspect_moves(
@@ -139,18 +168,34 @@ def _stated_checks(problem: PlanningProblem, programs: ProgramSet) -> list[Check
         same = digest == expected
         checks.append(Check("cell digest", same, int(not same), 0, "differing", detail))
     stated = stated_hash(programs.main)
+    found = content_hash(programs.programs.values())
     if stated is not None:
-        found = content_hash(programs.programs.values())
         same = stated == found
         detail = f"states {stated}, its content is {found}"
         checks.append(Check("hash", same, int(not same), 0, "differing", detail))
-    return checks
+    accepted = remark_value(programs.main, ACCEPTED_REMARK)
+    if accepted is not None:
+        sound = stated == found
+        detail = f"{accepted} stands in a remark" + ("" if sound else " without a matching hash")
+        checks.append(Check("accepted clearance", sound, int(not sound), 0, "unproven", detail))
+    return [*checks, *_frame_statements(problem, programs.main)]
+
+
+def _frame_statements(problem: PlanningProblem, main: ProgramFile) -> list[Check]:
+    """What remarks say of user frame and tool, which a person may copy into the controller."""
+    expected = set(pose_remarks(problem))
+    stated = [one.strip() for one in main.remarks if POSE_REMARK.match(one)]
+    if not stated:
+        return []
+    wrong = [one for one in stated if one not in expected]
+    detail = f"{wrong[0]!r} is not the cell's" if wrong else "as in the cell"
+    return [Check("stated frames", not wrong, len(wrong), 0, "differing", detail)]
 
 
 def _flow_check(read: Interpretation) -> Check:
     """Whether the text does what the checks assume: plain J and L moves, in order."""
-    findings = [one for one in read.findings if one.kind not in _FRAMES | TIME_ONLY]
-    notes = [str(one) for one in read.findings if one.kind in TIME_ONLY]
+    findings = [one for one in read.findings if one.kind not in _FRAMES | _NOTED]
+    notes = [str(one) for one in read.findings if one.kind in _NOTED]
     detail = str(findings[0]) if findings else "J and L moves in order"
     if read.unresolved:
         names = ", ".join(read.unresolved)
@@ -168,6 +213,23 @@ def _frame_check(problem: PlanningProblem, read: Interpretation) -> Check:
     if findings:
         detail += f"; {findings[0]}"
     return Check("frame and tool numbers", not findings, len(findings), 0, "other", detail)
+
+
+def _offset_check(problem: PlanningProblem, read: Interpretation) -> Check:
+    """The offset is added to contact moves and to no others: one without it would cut in."""
+    joints = read.program.joints
+    tcp = forward(problem.robot, joints, problem.tool.tcp)[:, :3, 3]
+    spans = find_spans(problem, tcp) or ()
+    wanted = {row for span in spans for row in range(span.first, span.last + 1)}
+    if not read.offset_moves:
+        # Joint positions cannot carry one; they state none at all.
+        wanted = set() if all(read.in_joints) else wanted
+    wrong = sorted(wanted ^ set(read.offset_moves))
+    register = f"PR[{problem.program.offset}]"
+    detail = f"Offset,{register} on contact moves alone"
+    if wrong:
+        detail = f"Offset,{register} missing or misplaced at {read.program.moves[wrong[0]].source}"
+    return Check("offset", not wrong, len(wrong), 0, "moves", detail)
 
 
 def _count_check(read: Interpretation) -> Check:

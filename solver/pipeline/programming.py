@@ -19,10 +19,16 @@ from solver.io.verified_program import Found, write_verified
 from solver.model.problem import PlanningProblem
 from solver.model.program import JointProgram, Move, Speed, rounded_joints
 from solver.model.program_settings import ContactMotion
+from solver.motion.corners import with_roundings
 from solver.motion.links import linked_moves
 from solver.pipeline.planning import rounded_clearance
 from solver.pipeline.program_building import contact_moves, program_with
-from solver.pipeline.program_check import ProgramReport, inspect_moves, inspect_program
+from solver.pipeline.program_check import (
+    ProgramReport,
+    inspect_moves,
+    inspect_program,
+    restated,
+)
 from solver.pipeline.remarks import NO_HASH
 from solver.pipeline.simplify import simplified
 from solver.progress import Monitor
@@ -121,6 +127,9 @@ def draft_program(
     )
     program = with_hash(program, post, options, problem)
     rendered = post.render(program, options, problem.robot)
+    if post.suffix == ".LS":
+        read = program_set(tuple(read_program(one.text, one.name) for one in rendered))
+        report = restated(report, problem, read)
     files = tuple((one.name, one.text) for one in rendered)
     return ProgramDraft(program, files, report, override)
 
@@ -192,7 +201,7 @@ def ordered_program(
     if order.simplify is not None:
         kept = min(least, problem.settings.safety_distance)
         passes = simplified(problem, passes, order.simplify, kept, monitor)
-    moves = linked(problem, passes, monitor)
+    moves = with_roundings(problem, linked(problem, passes, monitor))
     return program_with(problem, name, moves, None)
 
 

@@ -27,6 +27,9 @@ ACCEPTED_REMARK = "ACCEPTED CLEARANCE "
 OVERRIDE_REMARK = "OVERRIDE "
 NO_HASH = "0" * 12
 
+POSE_REMARK = re.compile(r"U[FT][0-9]+ ([XZP] |measured|nominal)")
+"""Begins a remark on a frame or tool."""
+
 _CLEARANCE = re.compile(r"[0-9]{1,4}[.][0-9]{1,3}")
 
 
@@ -46,8 +49,7 @@ def head_remarks(
     lines = [f"{CELL_REMARK}{problem.name}"]
     if section is not None:
         lines.append(f"{BEAM_REMARK}{section.name}")
-    lines += _pose_remarks("UF", problem.user_frame)
-    lines += _pose_remarks("UT", problem.user_tool)
+    lines += pose_remarks(problem)
     lines.append(f"{DIGEST_REMARK}{problem_digest(problem)}")
     lines.append(f"{HASH_REMARK}{content}")
     if clearance is not None and np.isfinite(clearance):
@@ -58,6 +60,12 @@ def head_remarks(
         return (*lines, "checked on the nominal model", "verify in T1")
     reason = stamped(OVERRIDE_REMARK, override)
     return (*lines, *reason, "CHECKS FAILED, see the report", "verify in T1")
+
+
+def pose_remarks(problem: PlanningProblem) -> list[str]:
+    """The remarks on user frame and tool: their values, measured or nominal."""
+    frame, tool = problem.user_frame, problem.user_tool
+    return [*_pose_remarks("UF", frame), *_pose_remarks("UT", tool)]
 
 
 def _pose_remarks(letter: str, numbered: NumberedPose) -> list[str]:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.analysis.corner_checks import corner_cut
 from solver.analysis.motion_checks import BETWEEN_ANGLE_TOLERANCE
 from solver.analysis.position_checks import ANGLE_TOLERANCE, angle_near, outside
 from solver.analysis.trace import Piece, follow
@@ -20,6 +19,7 @@ from solver.model.problem import PlanningProblem
 from solver.model.program import Move
 from solver.model.program_settings import ContactMotion
 from solver.model.toolpath import Pass
+from solver.motion.corners import corner_cut
 from solver.motion.feed import predict
 from solver.motion.sweep import sweep
 from solver.motion.trajectory import MotionError, Way, body_reach, sampled_way

@@ -99,3 +99,31 @@ def test_progress_of_a_dropped_job_is_not_told(line, qtbot):
     line.close()
     line.submit(work)
     assert reports == [("stage", 1, 1)]
+
+
+def test_a_job_that_waits_for_a_cancelled_one_is_busy_until_it_is_stopped_as_well(line, qtbot):
+    started, free = threading.Event(), threading.Event()
+
+    def slow(monitor):
+        started.set()
+        assert free.wait(10.0)
+        raise Cancelled
+
+    states, told = [], []
+    line.busy_changed.connect(states.append)
+    line.done.connect(told.append)
+    line.submit(slow)
+    assert started.wait(5.0)
+    line.submit(lambda _: "second")
+    assert line.busy
+    line.stop()
+    assert not line.busy
+    line.submit(lambda _: "third")
+    assert line.busy
+    line.stop()
+    assert states == [True, False, True, False]
+    free.set()
+    with qtbot.waitSignal(line.done):
+        line.submit(lambda _: "fourth")
+    assert told == ["fourth"]
+    assert states == [True, False, True, False, True, False]

@@ -137,6 +137,32 @@ FAULTS = {
     "a rounded corner above the face": (
         GROOVE, in_line(3, "FINE", "CNT100"), "links at rounded corners (estimated)",
     ),
+    "first move at full speed": (GROOVE, lambda t: with_speed(t, 1, "100%"), "link speed"),
+    "first move in a millisecond": (GROOVE, lambda t: with_speed(t, 1, "1msec"), "link speed"),
+    "first move on a straight line": (
+        GROOVE, lambda t: with_speed(t, 1, "2000mm/sec", "L"), "link speed",
+    ),
+    "link at full speed": (ZIGZAG, lambda t: with_speed(t, 31, "100%"), "link speed"),
+    "down to the face at full speed": (
+        ZIGZAG, lambda t: with_speed(t, 3, "2000mm/sec", "L"), "link speed",
+    ),
+    "a corner is rounded where the spindle is called": (
+        ZIGZAG, in_line(30, "FINE", "CNT100"), "events",
+    ),
+    "an output of the robot itself": (GROOVE, behind(20, "RO[1]=ON"), "program flow"),
+    "a tracking frame of an application": (
+        GROOVE, text("/MN\r\n", "/APPL\r\nLINE_TRACK ;\r\n/MN\r\n"), "program flow",
+    ),
+    "motions without the arm's group": (
+        GROOVE, text("= 1,*,*,*,*;", "= *,*,*,*,*;"), "program flow",
+    ),
+    "a payload in the middle": (GROOVE, behind(20, "PAYLOAD[2]"), "program flow"),
+    "a remark on another frame": (
+        GROOVE, text("!UF1 X 900.000", "!UF1 X 950.000"), "stated frames",
+    ),
+    "less clearance accepted": (
+        GROOVE, text("!verify in T1", "!ACCEPTED CLEARANCE 0.001 MM"), "accepted clearance",
+    ),
     "percent while grinding": (GROOVE, lambda t: with_speed(t, 20, "1%"), "feed"),
     "20 % too fast": (GROOVE, lambda t: with_speed(t, 20, "513msec"), "feed"),
     "20 % too slow": (GROOVE, lambda t: with_speed(t, 20, "740msec"), "feed"),
@@ -229,12 +255,8 @@ def test_what_was_written_passes_every_check(cell):
 HASH_ALONE = {
     "J6 0.01 deg off": (GROOVE, lambda t: with_joints(t, 20, joint_off(6, 0.01))),
     "one joint by the last decimal": (GROOVE, lambda t: with_joints(t, 20, joint_off(1, 0.001))),
-    "first move at full speed": (GROOVE, lambda t: with_speed(t, 1, "100%")),
-    "first move in a millisecond": (GROOVE, lambda t: with_speed(t, 1, "1msec")),
-    "link at full speed": (ZIGZAG, lambda t: with_speed(t, 31, "100%")),
     "home left out": (ZIGZAG, without(1)),
     "no digest": (GROOVE, text("!DIGEST ", "!DIGES ")),
-    "less clearance accepted": (GROOVE, text("!verify in T1", "!ACCEPTED CLEARANCE 0.001 MM")),
     "another remark": (GROOVE, text("!verify in T1", "!verified")),
     "another tool left selected": (GROOVE, behind(56, "UTOOL_NUM=5")),
 }

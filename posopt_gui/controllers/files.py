@@ -1,0 +1,373 @@
+"""The files of a window: new, open, save, recent ones, and what is dropped on it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from enum import Enum, auto
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, Protocol
+
+from PySide6.QtCore import QObject, QSettings, QStandardPaths, QThreadPool, Signal
+
+from posopt_gui.controllers.report import picture_bytes, report_of
+from posopt_gui.controllers.session import CLOSING_TIME, Message, Session
+from posopt_gui.document.project import ProjectState, state_of_cell
+from posopt_gui.document.project_file import SUFFIX, load_project, save_project
+from posopt_gui.viewmodels.check_sentences import sentence
+from posopt_gui.workers.jobs import JobLine
+from solver.errors import InputError, Place, PosoptError
+
+if TYPE_CHECKING:
+    from PySide6.QtGui import QImage
+
+    from posopt_gui.viewmodels.export_model import ExportForm
+
+DEFAULT_CELL: Final = "groove_hw300"
+CELL_SUFFIX: Final = ".toml"
+PATH_SUFFIXES: Final = (".csv", ".txt", ".tsv", ".json", ".ls")
+RECENT_KEY: Final = "files/recent"
+FOLDER_KEY: Final = "files/folder"
+RECENT_LIMIT: Final = 10
+
+
+class Choice(Enum):
+    """What is to become of unsaved work."""
+
+    SAVE = auto()
+    DISCARD = auto()
+    CANCEL = auto()
+
+
+class Questions(Protocol):
+    """What only the person can answer; a name is '' where nothing was chosen."""
+
+    def unsaved(self, name: str) -> Choice:
+        """Ask what to do with changes that were not saved."""
+
+    def open_name(self, folder: str) -> str:
+        """Ask which project or cell to open."""
+
+    def save_name(self, proposal: str, suffix: str) -> str:
+        """Ask where to save; an existing file was agreed to be replaced."""
+
+
+class NoQuestions:
+    """Nobody is there to answer: nothing is chosen and nothing thrown away."""
+
+    def unsaved(self, _name: str) -> Choice:
+        """Keep the work."""
+        return Choice.CANCEL
+
+    def open_name(self, _folder: str) -> str:
+        """Choose nothing."""
+        return ""
+
+    def save_name(self, _proposal: str, _suffix: str) -> str:
+        """Choose nothing."""
+        return ""
+
+
+def state_of_argument(file: str | None) -> tuple[ProjectState, Path | None]:
+    """The inputs that a window begins with, and the project file that they came from.
+
+    Raises
+    ------
+    InputError
+        When the file, or the shipped cell of that name, cannot be read.
+    """
+    if file is not None and Path(file).suffix.lower() == SUFFIX:
+        path = Path(file).absolute()
+        return load_project(path), path
+    return state_of_cell(file if file is not None else DEFAULT_CELL), None
+
+
+class Files(QObject):
+    """Knows which file the document is, and asks before unsaved work would be lost.
+
+    `title_changed` tells that the name or the mark of changes is another one; `recent_changed`
+    that the list is. `path_refused` carries a path file that could not be read and the error,
+    for a preview of its columns.
+    """
+
+    title_changed = Signal()
+    recent_changed = Signal()
+    path_refused = Signal(object, object)
+    report_saved = Signal(object)
+
+    def __init__(
+        self,
+        session: Session,
+        settings: QSettings,
+        ask: Questions | None = None,
+        parent: QObject | None = None,
+    ) -> None:
+        super().__init__(parent or session)
+        self._session, self._settings = session, settings
+        self.ask: Questions = ask or NoQuestions()
+        self._path: Path | None = None
+        self._pool = QThreadPool(self)
+        self._imports = JobLine(self._pool, self)
+        self._imports.done.connect(self._imported)
+        self._imports.failed.connect(self._import_failed)
+        self._reports = JobLine(self._pool, self)
+        self._reports.done.connect(self._reported)
+        self._reports.failed.connect(self._failed)
+        session.document.history_changed.connect(self.title_changed)
+
+    @property
+    def path(self) -> Path | None:
+        """The project file, None for one that was never saved."""
+        return self._path
+
+    @property
+    def name(self) -> str:
+        """The project's name for the title."""
+        if self._path is not None:
+            return self._path.stem
+        cell = self._session.document.value("cell.name")
+        return str(cell) if cell else self._session.look.tr("Untitled")
+
+    @property
+    def modified(self) -> bool:
+        """Whether there is work that no file holds."""
+        return self._session.document.modified
+
+    @property
+    def folder(self) -> Path:
+        """Where a person last opened or saved something."""
+        kept = self._settings.value(FOLDER_KEY, "", type=str)
+        if isinstance(kept, str) and kept and Path(kept).is_dir():
+            return Path(kept)
+        place = QStandardPaths.StandardLocation.DocumentsLocation
+        return Path(QStandardPaths.writableLocation(place) or Path.home())
+
+    @property
+    def recent(self) -> tuple[Path, ...]:
+        """Files that were opened or saved, the last one first."""
+        text = self._settings.value(RECENT_KEY, "[]", type=str)
+        try:
+            found = json.loads(str(text))
+        except ValueError:
+            return ()
+        if not isinstance(found, list):
+            return ()
+        return tuple(Path(one) for one in found if isinstance(one, str))[:RECENT_LIMIT]
+
+    def clear_recent(self) -> None:
+        """Forget the list."""
+        self._settings.setValue(RECENT_KEY, "[]")
+        self.recent_changed.emit()
+
+    def opened(self, path: Path | None) -> None:
+        """Take note of the file that the document was read from."""
+        self._path = path
+        if path is not None:
+            self._note(path)
+        self.title_changed.emit()
+
+    def new(self) -> bool:
+        """Begin with the default cell; False where the person keeps the old one."""
+        if not self._may_leave():
+            return False
+        self._begin(state_of_cell(DEFAULT_CELL), None)
+        return True
+
+    def open(self) -> bool:
+        """Ask for a project or a cell, and open it."""
+        name = self.ask.open_name(str(self.folder))
+        return bool(name) and self.open_file(Path(name))
+
+    def open_file(self, path: Path) -> bool:
+        """Open a project or a cell; False where it cannot be read or the old one is kept."""
+        path = Path(path).absolute()
+        try:
+            project = path.suffix.lower() == SUFFIX
+            state = load_project(path) if project else state_of_cell(path)
+        except PosoptError as error:
+            self._say(error)
+            self._forget(path)
+            return False
+        if not self._may_leave():
+            return False
+        self._begin(state, path if project else None)
+        self._note(path)
+        return True
+
+    def save(self) -> bool:
+        """Save under the name that the project has, or ask for one."""
+        return self.save_as() if self._path is None else self._save(self._path)
+
+    def save_as(self) -> bool:
+        """Ask for a name and save under it."""
+        proposal = self._path or self.folder / f"{self.name}{SUFFIX}"
+        name = self.ask.save_name(str(proposal), SUFFIX)
+        return bool(name) and self._save(with_suffix(Path(name), SUFFIX))
+
+    def drop(self, file: str | Path) -> bool:
+        """Open a project or a cell, or take a path file into the project."""
+        path = Path(file).absolute()
+        suffix = path.suffix.lower()
+        if suffix in {SUFFIX, CELL_SUFFIX}:
+            return self.open_file(path)
+        if suffix in PATH_SUFFIXES:
+            self.import_path(path)
+            return True
+        words = "is no project ({project}), cell ({cell}) or path ({paths})"
+        known = ", ".join(PATH_SUFFIXES)
+        text = self._session.look.tr(words, project=SUFFIX, cell=CELL_SUFFIX, paths=known)
+        self._say(InputError(text, Place(path.name)))
+        return False
+
+    def import_path(self, path: Path) -> None:
+        """Make a path file the project's path, once it was read and found to be of use."""
+        state = self._session.document.state
+        self._imports.submit(lambda _: _with_path(state, path))
+
+    def may_close(self) -> bool:
+        """Whether nothing would be lost; asks the person where something would."""
+        return self._may_leave()
+
+    def ended(self) -> bool:
+        """Stop what still runs; False where it has not ended in time."""
+        self._imports.close()
+        self._reports.close()
+        return self._pool.waitForDone(CLOSING_TIME)
+
+    def guide(self) -> str:
+        """Where the user guide is; '' and a sentence where it was not installed."""
+        beside = Path(__file__).resolve().parents[2] / "docs" / "window.md"
+        if beside.is_file():
+            return str(beside)
+        words = self._session.look.tr("The guide is docs/window.md of the sources.")
+        self._session.say(Message("info", words))
+        return ""
+
+    def save_report(self, pictures: Mapping[str, QImage], form: ExportForm | None = None) -> bool:
+        """Ask for a name, and write the HTML report of the shown sequence."""
+        result = self._session.chosen_result
+        if result is None:
+            return False
+        proposal = self.folder / f"{result.problem.program.name}_report.html"
+        name = self.ask.save_name(str(proposal), ".html")
+        if not name:
+            return False
+        path = with_suffix(Path(name), ".html")
+        self._settings.setValue(FOLDER_KEY, str(path.parent))
+        found = {key: picture_bytes(image) for key, image in pictures.items()}
+        language = self._session.look.language
+        self._reports.submit(
+            lambda monitor: report_of(result, path, found, language, form, monitor)
+        )
+        return True
+
+    def _may_leave(self) -> bool:
+        if not self.modified:
+            return True
+        match self.ask.unsaved(self.name):
+            case Choice.SAVE:
+                return self.save()
+            case Choice.DISCARD:
+                return True
+            case _:
+                return False
+
+    def _begin(self, state: ProjectState, path: Path | None) -> None:
+        self._imports.stop()
+        self._path = path
+        self._session.open(state)
+        self._session.start()
+        self.title_changed.emit()
+
+    def _save(self, path: Path) -> bool:
+        path = path.absolute()
+        try:
+            save_project(self._session.document.state, path)
+        except (PosoptError, ValueError, TypeError) as error:
+            self._failed(error)
+            return False
+        self._path = path
+        self._session.document.mark_saved()
+        self._note(path)
+        self.title_changed.emit()
+        words = self._session.look.tr("{name} was saved.", name=path.name)
+        self._session.say(Message("info", words))
+        return True
+
+    def _note(self, path: Path) -> None:
+        rest = [one for one in self.recent if one != path]
+        self._set_recent([path, *rest][:RECENT_LIMIT])
+        self._settings.setValue(FOLDER_KEY, str(path.parent))
+
+    def _forget(self, path: Path) -> None:
+        if path in self.recent and not path.exists():
+            self._set_recent([one for one in self.recent if one != path])
+
+    def _set_recent(self, paths: list[Path]) -> None:
+        self._settings.setValue(RECENT_KEY, json.dumps([str(one) for one in paths]))
+        self.recent_changed.emit()
+
+    def _imported(self, found: tuple[str, bytes]) -> None:
+        name, data = found
+        document = self._session.document
+        document.edit("Path", state_with_path(document.state, name, data))
+        words = self._session.look.tr("The path is now that of {name}.", name=name)
+        self._session.say(Message("info", words))
+
+    def _import_failed(self, failure: object) -> None:
+        if isinstance(failure, _PathError):
+            self._say(failure.error)
+            self.path_refused.emit(failure.path, failure.error)
+        else:
+            self._failed(failure)
+
+    def _reported(self, path: Path) -> None:
+        words = self._session.look.tr("{name} was saved.", name=path.name)
+        self._session.say(Message("info", words))
+        self.report_saved.emit(path)
+
+    def _failed(self, error: object) -> None:
+        if isinstance(error, PosoptError):
+            self._say(error)
+            return
+        words = "posopt met a defect of its own and kept your work; please report it: {error}"
+        text = self._session.look.tr(words, error=f"{type(error).__name__}: {error}")
+        self._session.say(Message("error", text))
+
+    def _say(self, error: PosoptError) -> None:
+        self._session.say(Message("error", sentence(str(error), self._session.look.tr)))
+
+
+class _PathError(PosoptError):
+    """A path file that cannot be the path of the project."""
+
+    def __init__(self, path: Path, error: PosoptError) -> None:
+        self.path, self.error = path, error
+        super().__init__(str(error))
+
+
+def with_suffix(path: Path, suffix: str) -> Path:
+    """The path with a suffix, unless it has it already."""
+    return path if path.suffix.lower() == suffix else path.with_name(path.name + suffix)
+
+
+def state_with_path(state: ProjectState, name: str, data: bytes) -> ProjectState:
+    """The state with a path file in place of its path; what else is said of the path stays."""
+    path = dict(state.cell.get("path") or {})
+    for key in ("line", "parametric"):
+        path.pop(key, None)
+    cell = {**state.cell, "path": {**path, "file": name}}
+    return replace(state, cell=cell, files={name: data}, pins=(), regions=())
+
+
+def _with_path(state: ProjectState, path: Path) -> tuple[str, bytes]:
+    """Read a path file, and try whether the cell can be built with it."""
+    from solver.io.importers import path_source  # noqa: PLC0415 - loaded when it is needed
+
+    try:
+        data = path_source(path).data
+        state_with_path(state, path.name, data).problem()
+    except PosoptError as error:
+        raise _PathError(path, error) from error
+    return path.name, data

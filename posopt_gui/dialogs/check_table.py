@@ -1,0 +1,109 @@
+"""A table of checks: what failed first, a click goes to the waypoint."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from PySide6.QtCore import QModelIndex, QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QBrush, QColor, QResizeEvent
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QHeaderView,
+    QTableWidget,
+    QTableWidgetItem,
+    QWidget,
+)
+
+from posopt_gui.look import Look
+from posopt_gui.viewmodels.export_model import CheckRow
+
+HEADERS: Final = ("", "Check", "Value", "Limit", "Detail")
+WAYPOINT_ROLE: Final = Qt.ItemDataRole.UserRole
+WIDTHS: Final = {1: (25, 190), 2: (19, 140), 3: (19, 140)}
+"""Columns with their share of the width [%] and their largest width; the detail gets the rest."""
+
+
+class CheckTable(QTableWidget):
+    """Shows rows of checks; `waypoint_chosen` carries the waypoint from 0 of a clicked row."""
+
+    waypoint_chosen = Signal(int)
+
+    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+        super().__init__(0, len(HEADERS), parent)
+        self._look = look
+        self._rows: tuple[CheckRow, ...] = ()
+        self._old = False
+        self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+        self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
+        self.setTabKeyNavigation(False)
+        self.setShowGrid(False)
+        self.setWordWrap(True)
+        self.setTextElideMode(Qt.TextElideMode.ElideNone)
+        self.verticalHeader().hide()
+        header = self.horizontalHeader()
+        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+        header.setHighlightSections(False)
+        header.setStretchLastSection(True)
+        header.setSectionResizeMode(0, QHeaderView.ResizeMode.ResizeToContents)
+        header.sectionResized.connect(self.resizeRowsToContents)
+        self.clicked.connect(self._choose)
+        self.activated.connect(self._choose)
+
+    def show_rows(self, rows: tuple[CheckRow, ...], *, old: bool) -> None:
+        """Fill the table; `old` rows are dimmed, since they belong to something before."""
+        if (rows, old) == (self._rows, self._old):
+            return
+        self._rows, self._old = rows, old
+        self._fill()
+
+    def retranslate(self) -> None:
+        """Set the headers in the chosen language; the rows come with their words."""
+        self.setHorizontalHeaderLabels([self._look.tr(one) if one else "" for one in HEADERS])
+        self.setAccessibleName(self._look.tr("Checks of the program"))
+
+    def retheme(self) -> None:
+        """Set the colours again."""
+        self._fill()
+
+    def _fill(self) -> None:
+        tip = self._look.tr("Click to look at this waypoint")
+        self.setRowCount(len(self._rows))
+        for number, row in enumerate(self._rows):
+            cells = (row.word, row.name, row.value, row.limit, row.detail)
+            for column, text in enumerate(cells):
+                item = QTableWidgetItem(text)
+                item.setForeground(self._brush(row, column))
+                item.setTextAlignment(Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft)
+                item.setData(WAYPOINT_ROLE, row.waypoint)
+                item.setToolTip(text if row.waypoint is None else f"{text}\n{tip}")
+                if column == 0 or not row.passed:
+                    font = item.font()
+                    font.setBold(True)
+                    item.setFont(font)
+                self.setItem(number, column, item)
+        self.resizeRowsToContents()
+
+    def _brush(self, row: CheckRow, column: int) -> QBrush:
+        theme = self._look.theme
+        colour = theme.text
+        if self._old:
+            colour = theme.muted
+        elif column == 0:
+            colour = theme.good if row.passed else theme.error
+        return QBrush(QColor(colour))
+
+    def _choose(self, index: QModelIndex) -> None:
+        waypoint = index.data(WAYPOINT_ROLE)
+        if waypoint is not None:
+            self.waypoint_chosen.emit(int(waypoint))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        """Break the lines anew for another width."""
+        super().resizeEvent(event)
+        header, room = self.horizontalHeader(), self.viewport().width()
+        with QSignalBlocker(header):
+            for column, (share, widest) in WIDTHS.items():
+                header.resizeSection(column, min(room * share // 100, widest))
+        self.resizeRowsToContents()

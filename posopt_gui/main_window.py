@@ -1,0 +1,354 @@
+"""The main window: puts the panels together and connects them; nothing is computed here."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QSettings, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
+from PySide6.QtWidgets import (
+    QApplication,
+    QComboBox,
+    QLabel,
+    QMainWindow,
+    QTabWidget,
+    QToolBar,
+    QToolButton,
+    QWidget,
+)
+
+from posopt_gui.actions import Actions
+from posopt_gui.controllers.session import Message, Session
+from posopt_gui.dialogs.file_questions import FileQuestions
+from posopt_gui.style import apply_theme
+from posopt_gui.views.places import Places
+from posopt_gui.views.shell_parts import RecentMenu
+from posopt_gui.views.status_line import StatusLine
+from solver.model.settings import Scheme
+
+if TYPE_CHECKING:
+    from posopt_gui.controllers.files import Files
+    from posopt_gui.controllers.recovery import Recovery
+    from posopt_gui.dialogs.export_dialog import ExportDialog
+    from posopt_gui.views.guide_window import GuideWindow
+
+TITLE = "posopt"
+SCHEMES = (Scheme.EXACT, Scheme.F, Scheme.F1, Scheme.F2)
+
+
+class MainWindow(QMainWindow):
+    """Shell first; the panels, plots and the 3D view follow once it is on screen."""
+
+    ready = Signal()
+
+    def __init__(
+        self, session: Session, files: Files, recovery: Recovery, settings: QSettings
+    ) -> None:
+        super().__init__()
+        self.session, self.files, self.recovery = session, files, recovery
+        self.files.ask = FileQuestions(self, session.look)
+        self._settings = settings
+        self._tr = session.look.tr
+        self._views: list[QWidget] = []
+        self.guide: GuideWindow | None = None
+        self._dialogs: dict[str, ExportDialog] = {}
+        self.setMinimumSize(1024, 680)
+        self.resize(1440, 900)
+        self.setAcceptDrops(True)
+        self.actions_table = Actions(self, session.look)
+        self._menus = self.actions_table.fill(self.menuBar())
+        self._recent = RecentMenu(self)
+        self._menus["File"].insertMenu(self.actions_table["save"], self._recent)
+        self._make_tool_bar()
+        self._make_status_bar()
+        self.places = Places(self, settings)
+        self._connect()
+        self.retranslate()
+        self.retheme()
+
+    def _make_tool_bar(self) -> None:
+        bar = QToolBar(self)
+        bar.setObjectName("main")
+        bar.setMovable(False)
+        bar.setIconSize(QSize(18, 18))
+        bar.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextOnly)
+        table = self.actions_table
+        for group in (("open", "save"), ("undo", "redo"), ("plan", "stop")):
+            for name in group:
+                bar.addAction(table[name])
+            bar.addSeparator()
+        button = bar.widgetForAction(table["plan"])
+        if isinstance(button, QToolButton):
+            button.setObjectName("primary")
+        self._scheme_words, self.scheme = QLabel(), QComboBox()
+        self._scheme_words.setBuddy(self.scheme)
+        for scheme in SCHEMES:
+            self.scheme.addItem(scheme.value, scheme)
+        bar.addWidget(self._scheme_words)
+        bar.addWidget(self.scheme)
+        bar.addAction(table["compare"])
+        bar.addAction(table["live"])
+        bar.addSeparator()
+        bar.addAction(table["export"])
+        self.addToolBar(bar)
+        self._bar = bar
+
+    def _make_status_bar(self) -> None:
+        bar = self.statusBar()
+        self.status = StatusLine(self.session, bar)
+        self._units, self._languages = QLabel("mm · °"), QToolButton()
+        self._languages.clicked.connect(self.actions_table["chinese"].trigger)
+        for widget in (self._units, self._languages):
+            bar.addPermanentWidget(widget)
+
+    def load_views(self) -> None:
+        """Build the panels; plots and OpenGL are loaded here, not before the window shows."""
+        from posopt_gui.dialogs.setup_dialogs import SetupDialogs  # noqa: PLC0415
+        from posopt_gui.views.curves_view import CurvesView  # noqa: PLC0415
+        from posopt_gui.views.hint_spots import make_hints  # noqa: PLC0415
+        from posopt_gui.views.inspector_view import InspectorView  # noqa: PLC0415
+        from posopt_gui.views.map_view import MapView  # noqa: PLC0415
+        from posopt_gui.views.results_view import ResultsView  # noqa: PLC0415
+        from posopt_gui.views.scene_view import SceneView  # noqa: PLC0415
+        from posopt_gui.views.setup_view import SetupView  # noqa: PLC0415
+        from posopt_gui.views.timeline_view import TimelineView  # noqa: PLC0415
+
+        self.setup = SetupView(self.session)
+        self.setup_dialogs = SetupDialogs(self.session, self.setup)
+        self.inspector = InspectorView(self.session)
+        self.timeline = TimelineView(self.session)
+        self.scene = SceneView(self.session)
+        self.map = MapView(self.session)
+        self.curves = CurvesView(self.session)
+        self.results = ResultsView(self.session, self.curves.comparison)
+        self.tabs = QTabWidget()
+        self.tabs.setDocumentMode(True)
+        self.tabs.tabBar().setDrawBase(False)
+        self.tabs.addTab(self.curves, "")
+        self.tabs.addTab(self.results, "")
+        panels = {"Setup": self.setup, "Inspector": self.inspector, "Playback": self.timeline}
+        self.places.fill(panels, (self.scene, self.map, self.tabs))
+        self._views = [
+            self.setup, self.inspector, self.timeline, self.scene, self.map, self.curves,
+            self.results,
+        ]  # fmt: skip
+        self._link_axes()
+        self._fill_menus()
+        self.inspector.key_wanted.connect(self._show_field)
+        self.retranslate()
+        button = self._bar.widgetForAction(self.actions_table["export"])
+        self.hints = make_hints(self, self.session, self._settings, self.setup, self.map, button)
+        self.ready.emit()
+
+    def _fill_menus(self) -> None:
+        """Put the panels' own actions, with their keys, into the menus."""
+        tools = self.scene.tools
+        for menu, actions in (
+            ("Plan", self.map.actions_for_menu),
+            ("Plan", self.timeline.actions_for_menu),
+            ("View", [*tools.camera_actions, tools.fit_action]),
+            ("View", list(tools.part_actions.values())),
+        ):
+            self._menus[menu].addSeparator()
+            self._menus[menu].addActions(list(actions))
+        self._menus["View"].addSeparator()
+        self._menus["View"].addActions(self.places.actions)
+
+    def _show_recent(self) -> None:
+        files = self.files
+        self._recent.show_files(files.recent, files.open_file, files.clear_recent, self._tr)
+
+    def _show_field(self, key: str) -> None:
+        self.places.show("Setup")
+        self.setup.focus_key(key)
+
+    def _link_axes(self) -> None:
+        """One x axis for the map and the curves."""
+        self.map.x_range_changed.connect(self.curves.set_x_range)
+        self.curves.x_range_changed.connect(self.map.set_x_range)
+
+    def _connect(self) -> None:
+        session, look = self.session, self.session.look
+        self.actions_table.connect(
+            {
+                "new": self.files.new,
+                "open": self.files.open,
+                "save": self.files.save,
+                "save_as": self.files.save_as,
+                "export": self.show_export,
+                "report": self.save_report,
+                "quit": self.close,
+                "undo": session.document.undo,
+                "redo": session.document.redo,
+                "clear_wishes": session.clear_wishes,
+                "plan": session.plan,
+                "stop": session.stop,
+                "live": self._set_live,
+                "compare": self._set_compared,
+                "dark": lambda on: look.set_theme("dark" if on else "light"),
+                "chinese": lambda on: look.set_language("zh_CN" if on else "en"),
+                "reset_layout": self.places.reset,
+                "guide": self.open_guide,
+                "about": self.show_about,
+            }
+        )
+        self.actions_table["dark"].setChecked(look.theme.dark)
+        self.actions_table["chinese"].setChecked(look.language == "zh_CN")
+        self.scheme.activated.connect(self._choose_scheme)
+        session.planning_changed.connect(self._on_planning)
+        session.state_changed.connect(self._on_state)
+        session.document.history_changed.connect(self._on_state)
+        session.result_changed.connect(self._on_result)
+        self.files.title_changed.connect(self._on_title)
+        self.files.recent_changed.connect(self._show_recent)
+        look.language_changed.connect(self.retranslate)
+        look.theme_changed.connect(self.retheme)
+        self._on_planning(False)
+        self._on_state()
+
+    def retranslate(self) -> None:
+        """Set all words of the shell again; the panels do it for themselves."""
+        self.actions_table.retranslate()
+        self.places.retranslate(self._tr)
+        if self._views:
+            self.tabs.setTabText(0, self._tr("Curves"))
+            self.tabs.setTabText(1, self._tr("Results"))
+        self.scheme.setToolTip(self._tr("How the graph is searched; exact is proven optimal"))
+        self.scheme.setAccessibleName(self._tr("Scheme"))
+        self._scheme_words.setText(self._tr("Scheme"))
+        for row, scheme in enumerate(SCHEMES):
+            self.scheme.setItemText(row, self._tr(scheme.value))
+        self._languages.setText("English" if self.session.look.language == "zh_CN" else "中文")
+        self._languages.setToolTip(self._tr("Change the language"))
+        self._show_recent()
+        self._on_state()
+        self._on_title()
+        self._on_result()
+
+    def retheme(self) -> None:
+        """Give the application the colours of the theme."""
+        application = QApplication.instance()
+        if isinstance(application, QApplication):
+            apply_theme(application, self.session.look.theme)
+        self.places.retheme(self.session.look.theme)
+
+    def export_dialog(self) -> ExportDialog:
+        """The export dialog; it is made when it is first asked for."""
+        from posopt_gui.dialogs.export_dialog import ExportDialog  # noqa: PLC0415
+
+        dialog = self._dialogs.get("export")
+        if dialog is None:
+            dialog = self._dialogs["export"] = ExportDialog(self.session, self)
+            dialog.exporter.set_folder(self.files.folder)
+            dialog.report_requested.connect(self.save_report)
+        return dialog
+
+    def show_export(self) -> None:
+        """Open the export dialog, or bring it to the front."""
+        self.hints.close("export")
+        dialog = self.export_dialog()
+        dialog.show()
+        dialog.raise_()
+        dialog.activateWindow()
+
+    def save_report(self) -> None:
+        """Write the HTML report with pictures of the panels."""
+        pictures = {
+            "map": self.map.grab_image(),
+            "curves": self.curves.grab().toImage(),
+            "scene": self.scene.grab_image(),
+        }
+        dialog = self._dialogs.get("export")
+        form = dialog.exporter.form if dialog is not None else None
+        self.files.save_report(pictures, form)
+
+    def open_guide(self) -> None:
+        """Show the user guide."""
+        from posopt_gui.views.guide_window import GuideWindow  # noqa: PLC0415
+
+        file = self.files.guide()
+        if not file:
+            return
+        if self.guide is None:
+            self.guide = GuideWindow(self.session.look, self)
+        self.guide.open(Path(file))
+        self.guide.show()
+        self.guide.raise_()
+
+    def show_about(self) -> None:
+        """Say what this is and what it is not."""
+        words = (
+            "posopt plans on the nominal model of a cell. A checked program still has to be "
+            "verified on the robot, in T1, by a person."
+        )
+        self.session.say(Message("info", self._tr(words)))
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802 - Qt's name
+        """Take files."""
+        if event.mimeData().hasUrls():
+            event.acceptProposedAction()
+
+    def dropEvent(self, event: QDropEvent) -> None:  # noqa: N802 - Qt's name
+        """Open a project or a cell, or take a path file into the project."""
+        paths = [url.toLocalFile() for url in event.mimeData().urls() if url.isLocalFile()]
+        if paths:
+            event.acceptProposedAction()
+            QTimer.singleShot(0, lambda: self.files.drop(paths[0]))
+
+    def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802 - Qt's name
+        """Ask about unsaved work, keep the layout, and wait for what still runs."""
+        if not self.files.may_close():
+            event.ignore()
+            return
+        self.places.save()
+        for dialog in self._dialogs.values():
+            dialog.shut_down()
+            dialog.close()
+        self.recovery.end()
+        if self._views:
+            self.map.extras.close()
+            self.setup.path.loader.close()
+        self.session.close()
+        self.files.ended()
+        event.accept()
+
+    def _set_live(self, on: bool) -> None:
+        self.session.live = on
+        if on and self.session.stale:
+            self.session.plan()
+
+    def _set_compared(self, on: bool) -> None:
+        self.session.set_compared(SCHEMES if on else (Scheme.EXACT, Scheme.F2))
+        self.session.plan()
+
+    def _choose_scheme(self, row: int) -> None:
+        self.session.document.set_value("settings.scheme", SCHEMES[row].value, "Scheme")
+        self.session.plan()
+
+    def _on_planning(self, busy: bool) -> None:
+        self.actions_table["stop"].setEnabled(busy)
+
+    def _on_state(self) -> None:
+        document = self.session.document
+        for name, can, label in (
+            ("undo", document.can_undo, document.undo_label),
+            ("redo", document.can_redo, document.redo_label),
+        ):
+            self.actions_table[name].setEnabled(can)
+            self.actions_table.say_what(name, self._tr(label) if label else "")
+        state = document.state
+        self.actions_table["clear_wishes"].setEnabled(bool(state.pins or state.regions))
+        values = [scheme.value for scheme in SCHEMES]
+        value = document.value("settings.scheme")
+        self.scheme.setCurrentIndex(values.index(value) if value in values else 0)
+        self._on_title()
+
+    def _on_title(self) -> None:
+        mark = "*" if self.session.document.modified else ""
+        self.setWindowTitle(f"{self.files.name}{mark} - {TITLE}")
+
+    def _on_result(self) -> None:
+        session = self.session
+        self.actions_table["export"].setEnabled(session.result is not None)
+        self.actions_table["report"].setEnabled(session.result is not None and bool(self._views))

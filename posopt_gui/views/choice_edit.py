@@ -1,0 +1,125 @@
+"""A choice of several values; long lists are searched by typing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QFocusEvent, QKeyEvent, QWheelEvent
+from PySide6.QtWidgets import QComboBox, QCompleter, QLineEdit, QWidget
+
+LABEL_LENGTH = 6
+"""Least width of the closed list [characters]; it grows with the panel."""
+
+
+class ChoiceEdit(QComboBox):
+    """A list to choose from, and with `searchable` a text that finds in it.
+
+    Signals: `chosen(value)` when a person has chosen another value, `focused()`.
+    """
+
+    chosen = Signal(object)
+    focused = Signal()
+
+    def __init__(self, searchable: bool = False, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.setMinimumContentsLength(LABEL_LENGTH)
+        self._searchable = searchable
+        self._values: list[Any] = []
+        self._value: Any = None
+        if searchable:
+            self.setEditable(True)
+            self.setInsertPolicy(QComboBox.InsertPolicy.NoInsert)
+            completer = QCompleter(self.model(), self)
+            completer.setFilterMode(Qt.MatchFlag.MatchContains)
+            completer.setCaseSensitivity(Qt.CaseSensitivity.CaseInsensitive)
+            completer.setCompletionMode(QCompleter.CompletionMode.PopupCompletion)
+            self.setCompleter(completer)
+            self._line().editingFinished.connect(self._take_text)
+        self.activated.connect(self._take_index)
+
+    @property
+    def value(self) -> Any:
+        """The value that is shown."""
+        return self._value
+
+    def set_choices(self, choices: list[tuple[Any, str, str]]) -> None:
+        """Offer values with their labels and a tool tip each."""
+        self.blockSignals(True)
+        self.clear()
+        self._values = [value for value, _, _ in choices]
+        for row, (_, label, detail) in enumerate(choices):
+            self.addItem(label)
+            if detail:
+                self.setItemData(row, detail, Qt.ItemDataRole.ToolTipRole)
+        self.blockSignals(False)
+        self.show_value(self._value)
+
+    def show_value(self, value: Any) -> None:
+        """Show a value without saying that it was chosen."""
+        self._value = value
+        self.blockSignals(True)
+        if value in self._values:
+            self.setCurrentIndex(self._values.index(value))
+        elif self._searchable:
+            self.setCurrentIndex(-1)
+            self.setEditText("" if value is None else str(value))
+        else:
+            # A value that is none of them is shown as it is: its sentence says what is expected.
+            self.setCurrentIndex(-1)
+            self.setPlaceholderText("" if value is None else str(value))
+        if self._searchable:
+            self._line().setCursorPosition(0)
+        self.blockSignals(False)
+
+    def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802 - Qt's name
+        """Change only in focus; else the panel scrolls."""
+        if self.hasFocus() and not self._searchable:
+            super().wheelEvent(event)
+        else:
+            event.ignore()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
+        """Escape shows the old value again and leaves."""
+        if event.key() == Qt.Key.Key_Escape:
+            self.show_value(self._value)
+            self.clearFocus()
+            event.accept()
+            return
+        super().keyPressEvent(event)
+
+    def focusInEvent(self, event: QFocusEvent) -> None:  # noqa: N802 - Qt's name
+        """Tell that the field is being edited."""
+        super().focusInEvent(event)
+        self.focused.emit()
+
+    def _line(self) -> QLineEdit:
+        line = self.lineEdit()
+        if line is None:
+            raise RuntimeError("a list without search has no text to edit")
+        return line
+
+    def _take_index(self, row: int) -> None:
+        if 0 <= row < len(self._values):
+            self._take(self._values[row])
+
+    def _take_text(self) -> None:
+        text = self._line().text().strip()
+        labels = [self.itemText(row) for row in range(self.count())]
+        folded = [label.casefold().replace(" ", "") for label in labels]
+        wanted = text.casefold().replace(" ", "")
+        if wanted in folded:
+            self._take(self._values[folded.index(wanted)])
+        elif text:
+            near = [row for row, label in enumerate(folded) if wanted in label]
+            self._take(self._values[near[0]] if len(near) == 1 else text)
+        else:
+            self.show_value(self._value)
+
+    def _take(self, value: Any) -> None:
+        before = self._value
+        self.show_value(value)
+        if value != before:
+            self.chosen.emit(value)

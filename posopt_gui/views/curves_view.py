@@ -1,0 +1,391 @@
+"""Curves of the plan and its references over the waypoints, with one cursor through all."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtGui import QResizeEvent, QShowEvent
+from PySide6.QtWidgets import (
+    QFrame,
+    QHBoxLayout,
+    QScrollArea,
+    QTabWidget,
+    QVBoxLayout,
+    QWidget,
+)
+
+from posopt_gui.controllers.comparison import Comparison
+from posopt_gui.controllers.session import Session
+from posopt_gui.viewmodels.curves_model import (
+    PLAN,
+    Track,
+    axis_ticks,
+    first_of_passes,
+    free_side,
+    joint_range,
+    joint_words,
+    limit_words,
+    measure_rows,
+    place_on_path,
+    sequence_track,
+)
+from posopt_gui.views.change_bars import ChangeBars
+from posopt_gui.views.curve_legend import CurveLegend
+from posopt_gui.views.curve_plots import JOINT_COLOURS, WaypointPlot
+from posopt_gui.views.feed_plot import FeedPanel
+from posopt_gui.views.limit_gauge import LimitGauge
+from posopt_gui.views.measures_table import MeasuresTable
+from solver.units import DEG_PER_RAD, MM_PER_M
+
+ROW = 18
+"""Least height of a joint's row [px]."""
+
+LOW_ROW = 48
+"""A lower row keeps no room for its words [px]."""
+
+BOTTOM_AXIS = 20
+"""Height of the numbers below the last row [px]."""
+
+TICK_ROOM = 18
+"""Height that a number at an axis takes [px]."""
+
+LIMIT_COLOUR = "#E69F00"
+"""Beyond a joint limit, as on the map."""
+
+
+class CurvesView(QWidget):
+    """Tabs of curves; `x_range_changed` and `set_x_range` link them with the map."""
+
+    x_range_changed = Signal(float, float)
+
+    def __init__(
+        self,
+        session: Session,
+        comparison: Comparison | None = None,
+        parent: QWidget | None = None,
+    ) -> None:
+        super().__init__(parent)
+        self._session = session
+        self._tr = session.look.tr
+        self.comparison = comparison or Comparison(session, self)
+        self._plan: Track | None = None
+        self._starts: tuple[int, ...] = ()
+        self._opacity = 1.0
+        self._count = 0
+        self.joint_plots = tuple(WaypointPlot(gauged=True) for _ in range(6))
+        self.gauges = tuple(LimitGauge() for _ in range(6))
+        self.clearance_plot = WaypointPlot()
+        self.manipulability_plot = WaypointPlot()
+        self.step_plot = WaypointPlot()
+        self.feed = FeedPanel(session)
+        self.bars = ChangeBars()
+        self.table = MeasuresTable()
+        self.legend = CurveLegend(self._tr)
+        self._lay_out()
+        self._connect()
+        self.retheme()
+        self.retranslate()
+
+    @property
+    def plots(self) -> tuple[WaypointPlot, ...]:
+        """All plots over the waypoints."""
+        return (
+            *self.joint_plots,
+            self.clearance_plot,
+            self.manipulability_plot,
+            self.step_plot,
+            self.feed.plot,
+        )
+
+    @property
+    def plot_items(self) -> tuple[pg.PlotItem, ...]:
+        """The plots whose x axis is the waypoint, for linking."""
+        return tuple(plot.getPlotItem() for plot in self.plots)
+
+    def _lay_out(self) -> None:
+        self._rows = QWidget()
+        self._rows.setObjectName("joint_rows")
+        column = QVBoxLayout(self._rows)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(1)
+        for plot, gauge in zip(self.joint_plots, self.gauges, strict=True):
+            line = QHBoxLayout()
+            line.setSpacing(0)
+            line.addWidget(plot, 1)
+            line.addWidget(gauge)
+            column.addLayout(line, 1)
+        self._scroll = QScrollArea()
+        self._scroll.setWidget(self._rows)
+        self._scroll.setWidgetResizable(True)
+        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
+        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.tabs = QTabWidget()
+        self.tabs.setDocumentMode(True)
+        self.tabs.tabBar().setDrawBase(False)
+        for page in (
+            self._scroll, self.clearance_plot, self.manipulability_plot, self.step_plot,
+            self.feed, self.bars, self.table,
+        ):  # fmt: skip
+            self.tabs.addTab(page, "")
+        self.tabs.setCornerWidget(self.legend)
+        self.tabs.setUsesScrollButtons(True)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.tabs)
+
+    def _connect(self) -> None:
+        session = self._session
+        for plot in self.plots:
+            plot.place_wanted.connect(self._on_place_wanted)
+            plot.x_range_changed.connect(self._on_x_range)
+        self.legend.changed.connect(self._draw)
+        self.tabs.currentChanged.connect(self._on_tab)
+        self.comparison.changed.connect(self._draw)
+        session.result_changed.connect(self._on_result)
+        session.place_changed.connect(self._on_place)
+        session.check_changed.connect(self.feed.update_report)
+        session.stale_changed.connect(self._on_stale)
+        session.look.language_changed.connect(self.retranslate)
+        session.look.theme_changed.connect(self.retheme)
+
+    def retranslate(self) -> None:
+        """Set all texts again."""
+        tr = self._tr
+        titles = (
+            tr("Joints"), tr("Clearance"), tr("Manipulability"), tr("Step"), tr("Feed"),
+            tr("Change"), tr("Measures"),
+        )  # fmt: skip
+        tips = (
+            tr("Pendant joints J1 to J6 with their limits"),
+            tr("Distance of robot and tool to workpiece and fixtures"),
+            tr("How far the posture is from a singularity"),
+            tr("How far each joint moves from waypoint to waypoint"),
+            tr("Speed of the TCP that the joints allow, against the asked feed"),
+            tr("Cumulative change of each joint"),
+            tr("Amplitude, standard deviation and gains over the references"),
+        )
+        for index, (title, tip) in enumerate(zip(titles, tips, strict=True)):
+            self.tabs.setTabText(index, title)
+            self.tabs.setTabToolTip(index, tip)
+        self.clearance_plot.setLabel("left", tr("clearance, mm"))
+        self.manipulability_plot.setLabel("left", tr("manipulability, m³"))
+        self.step_plot.setLabel("left", tr("step, °"))
+        for plot in (self.clearance_plot, self.manipulability_plot, self.step_plot):
+            plot.setLabel("bottom", tr("waypoint"))
+        self.legend.retranslate()
+        self._fit_legend()
+        self.feed.retranslate()
+        self._on_result()
+
+    def retheme(self) -> None:
+        """Set all colours again."""
+        theme = self._session.look.theme
+        for plot in self.plots:
+            plot.set_theme(theme)
+        self.bars.set_theme(theme)
+        self._rows.setStyleSheet(f"#joint_rows {{ background: {theme.border}; }}")
+        for gauge in self.gauges:
+            gauge.set_theme(theme)
+        self.legend.set_theme(theme)
+        self.table.set_theme(theme)
+        self._on_result()
+
+    def set_x_range(self, low: float, high: float) -> None:
+        """Show these waypoints (numbers from 1) in all plots."""
+        for plot in self.plots:
+            plot.set_x_range(low, high)
+
+    def _on_x_range(self, low: float, high: float) -> None:
+        self.set_x_range(low, high)
+        self.x_range_changed.emit(low, high)
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
+        """Draw what came while this was hidden."""
+        super().showEvent(event)
+        self._draw()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        """Keep the room for the words when the plots change their height."""
+        super().resizeEvent(event)
+        self._fit_legend()
+        QTimer.singleShot(0, self, self._draw)
+
+    def _fit_legend(self) -> None:
+        self.legend.fit(self.width() - self.tabs.tabBar().sizeHint().width() - 8)
+
+    def _on_tab(self, index: int) -> None:
+        self.legend.show_joints(self.tabs.currentWidget() is self._scroll)
+        self.legend.setVisible(self.tabs.currentWidget() is not self.table)
+        self._fit_legend()
+        self._draw()
+
+    def _on_place_wanted(self, axis: float) -> None:
+        self._session.set_place(place_on_path(axis, self._session.waypoints))
+
+    def _on_result(self) -> None:
+        result, sequence = self._session.result, self._session.sequence
+        theme = self._session.look.theme
+        if result is None or sequence is None:
+            self._plan, self._starts = None, ()
+        else:
+            self._plan = sequence_track(result.problem, sequence)
+            self._starts = first_of_passes(result.problem)
+        count = self._session.waypoints
+        for plot in self.plots:
+            plot.set_borders(self._starts, theme)
+            plot.set_count(count)
+        if count and count != self._count:
+            self.set_x_range(0.5, count + 0.5)
+        self._count = count
+        self.feed.update_report()
+        self._draw()
+        self._on_stale()
+
+    def _on_stale(self, *_: object) -> None:
+        opacity = 0.45 if self._session.stale else 1.0
+        if opacity == self._opacity:
+            return
+        self._opacity = opacity
+        for plot in self.plots:
+            plot.getPlotItem().setOpacity(opacity)
+
+    def _tracks(self) -> list[Track]:
+        shown = self.legend.shown
+        references = [one for one in self.comparison.tracks if one.name in shown]
+        return [*([self._plan] if self._plan is not None else []), *references]
+
+    def _draw(self) -> None:
+        """Draw the tab that is looked at; the others are drawn when they are opened."""
+        self.legend.set_known([one.name for one in self.comparison.tracks])
+        if not self.isVisible():
+            return
+        page = self.tabs.currentWidget()
+        if page is self._scroll:
+            self._draw_joints()
+        elif page is self.clearance_plot:
+            self._draw_clearance()
+        elif page is self.manipulability_plot:
+            self._draw_manipulability()
+        elif page is self.step_plot:
+            self._draw_steps()
+        elif page is self.bars:
+            self.bars.set_tracks(self._tracks(), self._session.look.theme, self._tr)
+        elif page is self.table:
+            everything = self.comparison.tracks
+            rows = measure_rows(self._plan, everything, self._tr) if self._plan else []
+            self.table.set_rows(rows)
+        self._on_place(self._session.place)
+
+    def _draw_joints(self) -> None:
+        theme, tracks = self._session.look.theme, self._tracks()
+        result = self._session.result
+        for joint, plot in enumerate(self.joint_plots):
+            plot.setVisible(joint in self.legend.joints)
+            self.gauges[joint].setVisible(joint in self.legend.joints)
+            curves = {one.name: one.joints[:, joint] for one in tracks}
+            plot.set_curves(curves, self._starts, theme)
+            if result is None or self._plan is None:
+                plot.set_ticks(())
+                self.gauges[joint].hide()
+                continue
+            limits = result.problem.joint_limits[joint] * DEG_PER_RAD
+            plot.set_bands((float(limits[0]), float(limits[1])), LIMIT_COLOUR)
+            self._fit_joint(plot, list(curves.values()), limits)
+            self.gauges[joint].set_used(limits, self._plan.joints[:, joint])
+        shown = [plot for joint, plot in enumerate(self.joint_plots) if joint in self.legend.joints]
+        room = self._scroll.viewport().height() - BOTTOM_AXIS
+        # All curves are equally high; the last one has the numbers below it besides.
+        row = max(ROW, room // max(len(shown), 1) - 1)
+        for plot, gauge in zip(self.joint_plots, self.gauges, strict=True):
+            last = bool(shown) and plot is shown[-1]
+            plot.getPlotItem().showAxis("bottom", last)
+            plot.setMinimumHeight(row + (BOTTOM_AXIS if last else 0))
+            gauge.set_below(float(BOTTOM_AXIS if last else 0))
+
+    def _fit_joint(self, plot: WaypointPlot, curves: list[np.ndarray], limits: np.ndarray) -> None:
+        """Choose the axis so that the words and the curves do not meet."""
+        whole, headroom = self.legend.whole_limits, plot.headroom
+        if plot.height() < LOW_ROW:
+            # The words then hide the beginning of a curve rather than take half of the row.
+            headroom = 0.0
+        low, high = joint_range(curves, limits, whole=whole)
+        side = free_side(curves, low, high, height=plot.headroom)
+        top = high
+        if not side:
+            low, high = joint_range(curves, limits, whole=whole, headroom=headroom)
+            top = high - headroom * (high - low)
+        plot.put_readout(side or "top")
+        plot.setYRange(low, high, padding=0.0)
+        room = plot.getPlotItem().getViewBox().height() * (top - low) / (high - low)
+        plot.set_ticks(axis_ticks(low, top, max(int(room / TICK_ROOM), 1)))
+
+    def _draw_clearance(self) -> None:
+        theme, result = self._session.look.theme, self._session.result
+        plot = self.clearance_plot
+        curves = {one.name: one.clearance for one in self._tracks()}
+        plot.set_curves(curves, self._starts, theme)
+        level = result.problem.settings.safety_distance * MM_PER_M if result else None
+        words = self._tr("safety distance {value} mm", value=f"{level or 0.0:.1f}")
+        plot.set_level(level, theme.error, words)
+        self._fit_from_zero(plot, curves, level)
+
+    def _draw_manipulability(self) -> None:
+        theme, result = self._session.look.theme, self._session.result
+        plot = self.manipulability_plot
+        curves = {one.name: one.manipulability for one in self._tracks()}
+        plot.set_curves(curves, self._starts, theme)
+        level = result.problem.settings.manipulability if result else None
+        words = self._tr("least allowed {value} m³", value=f"{level or 0.0:g}")
+        plot.set_level(level, theme.error, words)
+        self._fit_from_zero(plot, curves, level)
+
+    def _draw_steps(self) -> None:
+        theme, plot = self._session.look.theme, self.step_plot
+        tracks = self._tracks()
+        totals = {one.name: one.steps.sum(axis=1) for one in tracks if one.name != PLAN}
+        plot.set_stack(self._plan.steps if self._plan else np.zeros((0, 6)), JOINT_COLOURS)
+        plot.set_curves(totals, self._starts, theme)
+        highs = [np.nanmax(one.steps.sum(axis=1), initial=0.1) for one in tracks if len(one.steps)]
+        plot.setYRange(0.0, 1.25 * max(map(float, highs), default=1.0), padding=0.0)
+
+    @staticmethod
+    def _fit_from_zero(
+        plot: WaypointPlot, curves: dict[str, np.ndarray], level: float | None
+    ) -> None:
+        highs = [
+            float(np.max(values[np.isfinite(values)], initial=0.0)) for values in curves.values()
+        ]
+        plot.setYRange(0.0, 1.15 * max([level or 0.0, *highs, 1e-6]), padding=0.0)
+
+    def _on_place(self, place: float) -> None:
+        for plot in self.plots:
+            plot.set_place(place)
+        self.feed.show_readout(self._session.cursor)
+        plan, result = self._plan, self._session.result
+        if plan is None or result is None or self._session.cursor >= len(plan.joints):
+            for plot in self.plots:
+                plot.set_readout("")
+            return
+        at, tr = self._session.cursor, self._tr
+        limits = result.problem.joint_limits * DEG_PER_RAD
+        for joint, plot in enumerate(self.joint_plots):
+            value = float(plan.joints[at, joint])
+            plot.set_readout(joint_words(joint + 1, value))
+            self.gauges[joint].setToolTip(limit_words(tr, joint + 1, value, limits[joint]))
+            self.gauges[joint].set_value(plan.joints[at, joint])
+        number = tr("waypoint {number}", number=at + 1)
+        clearance = np.floor(plan.clearance[at] * 10.0 + 1e-7) / 10.0
+        self.clearance_plot.set_readout(f"{number} · {clearance:.1f} mm")
+        self.manipulability_plot.set_readout(f"{number} · {plan.manipulability[at]:.4f} m³")
+        self.step_plot.set_readout(f"{number} · {_step_words(plan.steps[at])}")
+
+
+def _step_words(steps: np.ndarray) -> str:
+    if not np.isfinite(steps).all():
+        return "–"
+    parts = (
+        f'<span style="color:{colour}">■</span> J{joint} {value:.2f}°'
+        for joint, (value, colour) in enumerate(zip(steps, JOINT_COLOURS, strict=True), start=1)
+    )
+    return " ".join(parts)

@@ -1,0 +1,96 @@
+"""A grid of labels whose rows are exchanged often; labels are made once and used again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence as Rows
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QGridLayout, QLabel, QSizePolicy, QWidget
+
+from posopt_gui.views.result_tables import tabular
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """A text in a colour, with a smaller line below it where there is one."""
+
+    words: str
+    colour: str
+    right: bool = False
+    below: str = ""
+    below_colour: str = ""
+
+    @property
+    def html(self) -> str:
+        """As rich text."""
+        return f'<span style="color:{self.colour}">{self.words}</span>'
+
+    @property
+    def html_below(self) -> str:
+        """The smaller line as rich text."""
+        return f'<span style="color:{self.below_colour}">{self.below}</span>'
+
+
+class LabelGrid(QWidget):
+    """Rows of texts; the second column takes the room that is left, and wraps."""
+
+    link_activated = Signal(str)
+
+    def __init__(self, columns: int, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._columns = columns
+        self._labels: list[list[QLabel]] = []
+        self._below: list[QLabel] = []
+        self._rows: tuple[tuple[Text, ...], ...] = ()
+        self._grid = QGridLayout(self)
+        self._grid.setContentsMargins(0, 2, 0, 2)
+        self._grid.setHorizontalSpacing(8)
+        self._grid.setVerticalSpacing(2)
+        self._grid.setColumnStretch(1, 1)
+
+    @property
+    def texts(self) -> list[list[str]]:
+        """The words that are shown."""
+        return [[one.words for one in row] for row in self._rows]
+
+    def set_rows(self, rows: Rows[tuple[Text, ...]]) -> None:
+        """Show these rows."""
+        if tuple(rows) == self._rows:
+            return
+        self._rows = tuple(rows)
+        while len(self._labels) < len(self._rows):
+            self._add()
+        for index, (labels, below) in enumerate(zip(self._labels, self._below, strict=True)):
+            shown = index < len(self._rows)
+            lower = next((one for one in self._rows[index] if one.below), None) if shown else None
+            below.setVisible(lower is not None)
+            if lower is not None:
+                below.setText(lower.html_below)
+            for column, label in enumerate(labels):
+                label.setVisible(shown)
+                if shown:
+                    text = self._rows[index][column]
+                    label.setText(text.html)
+                    side = Qt.AlignmentFlag.AlignRight if text.right else Qt.AlignmentFlag.AlignLeft
+                    label.setAlignment(side | Qt.AlignmentFlag.AlignTop)
+
+    def _add(self) -> None:
+        row = []
+        for column in range(self._columns):
+            label = QLabel()
+            label.setFont(tabular(self.font()))
+            label.setTextFormat(Qt.TextFormat.RichText)
+            label.setWordWrap(column == 1)
+            if column == 1:
+                label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+                label.setTextInteractionFlags(Qt.TextInteractionFlag.TextBrowserInteraction)
+                label.linkActivated.connect(self.link_activated)
+            self._grid.addWidget(label, 2 * len(self._labels), column)
+            row.append(label)
+        below = QLabel()
+        below.setTextFormat(Qt.TextFormat.RichText)
+        below.setWordWrap(True)
+        self._grid.addWidget(below, 2 * len(self._labels) + 1, 1, 1, self._columns - 1)
+        self._labels.append(row)
+        self._below.append(below)

@@ -1,0 +1,321 @@
+"""Legend, colour bar and the card beside the mouse."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import (
+    QColor,
+    QFont,
+    QFontMetricsF,
+    QImage,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QResizeEvent,
+    QWheelEvent,
+)
+from PySide6.QtWidgets import QComboBox, QFrame, QLabel, QSizePolicy, QVBoxLayout, QWidget
+
+from posopt_gui.theme import Theme
+from posopt_gui.viewmodels.map_colours import FIRST_INDEX, ByteArray, Scale
+from posopt_gui.viewmodels.map_readings import Card
+from posopt_gui.views.curve_plots import LEFT_AXIS
+
+CHIP = 13.0
+GAP = 16.0
+ROW = 22.0
+BAR_WIDTH = 240.0
+MARGIN = 8.0
+LEAST_HEIGHT = 28
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Chip:
+    """A colour with its letter and what it stands for."""
+
+    colour: QColor
+    letter: str
+    letter_colour: QColor
+    text: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bar:
+    """A colour bar: its title, scale and table of colours."""
+
+    title: str
+    scale: Scale
+    table: ByteArray
+
+
+class LegendStrip(QWidget):
+    """Colour bar and chips in one row, or in more where there is no room."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._bar: Bar | None = None
+        self._chips: tuple[Chip, ...] = ()
+        self._text, self._border = QColor(), QColor()
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+
+    def set_legend(self, bar: Bar | None, chips: Sequence[Chip], theme: Theme) -> None:
+        """Show another legend."""
+        self._bar, self._chips = bar, tuple(chips)
+        self._text, self._border = QColor(theme.text), QColor(theme.border)
+        words = [bar.title] if bar is not None else []
+        self.setAccessibleDescription(", ".join(words + [chip.text for chip in chips]))
+        self._fit()
+        self.update()
+
+    def sizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        """As high as the rows need."""
+        return QSize(200, self.minimumHeight())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        """Chips that no longer fit go to the next row."""
+        super().resizeEvent(event)
+        self._fit()
+
+    def _font(self) -> QFont:
+        font = QFont(self.font())
+        font.setPixelSize(11)
+        return font
+
+    def _fit(self) -> None:
+        places = self._places()
+        last = places[-1].y() if places else 0.0
+        height = int(last + ROW) if places else int(ROW)
+        height = max(height, LEAST_HEIGHT)
+        if height != self.minimumHeight() or height != self.maximumHeight():
+            self.setFixedHeight(height)
+
+    def _bar_end(self) -> float:
+        if self._bar is None:
+            return MARGIN
+        metrics = QFontMetricsF(self._font())
+        return MARGIN + metrics.horizontalAdvance(self._bar.title) + 8.0 + BAR_WIDTH + 2.0 * GAP
+
+    def _places(self) -> list[QPointF]:
+        metrics = QFontMetricsF(self._font())
+        start = self._bar_end()
+        x, y = start, 0.0
+        places = []
+        for chip in self._chips:
+            width = CHIP + 5.0 + metrics.horizontalAdvance(chip.text)
+            if x + width > self.width() - MARGIN and x > start:
+                x, y = start, y + ROW
+            places.append(QPointF(x, y))
+            x += width + GAP
+        return places
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
+        """Draw bar and chips."""
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, True)
+        painter.setFont(self._font())
+        if self._bar is not None:
+            self._draw_bar(painter, self._bar)
+        for chip, place in zip(self._chips, self._places(), strict=True):
+            self._draw_chip(painter, chip, place)
+
+    def _draw_chip(self, painter: QPainter, chip: Chip, place: QPointF) -> None:
+        box = QRectF(place.x(), place.y() + (ROW - CHIP) / 2.0, CHIP, CHIP)
+        painter.setPen(self._border)
+        painter.setBrush(chip.colour)
+        painter.drawRoundedRect(box, 2.0, 2.0)
+        if chip.letter:
+            font = self._font()
+            font.setBold(True)
+            painter.setFont(font)
+            painter.setPen(chip.letter_colour)
+            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, chip.letter)
+            painter.setFont(self._font())
+        painter.setPen(self._text)
+        left = place.x() + CHIP + 5.0
+        words = QRectF(left, place.y(), max(self.width() - left, 0.0), ROW)
+        painter.drawText(words, Qt.AlignmentFlag.AlignVCenter, chip.text)
+
+    def _draw_bar(self, painter: QPainter, bar: Bar) -> None:
+        metrics = QFontMetricsF(self._font())
+        painter.setPen(self._text)
+        title = metrics.horizontalAdvance(bar.title)
+        painter.drawText(QPointF(MARGIN, 15.0), bar.title)
+        box = QRectF(MARGIN + title + 10.0, 2.0, BAR_WIDTH, 10.0)
+        colours = bar.table[FIRST_INDEX:]
+        row = np.ascontiguousarray((colours[::-1] if bar.scale.reverse else colours)[None])
+        image = QImage(row.data, row.shape[1], 1, 4 * row.shape[1], QImage.Format.Format_RGBA8888)
+        painter.drawImage(box, image)
+        painter.setPen(self._border)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawRect(box)
+        painter.setPen(self._text)
+        for tick in bar.scale.ticks():
+            x = box.left() + tick.share * box.width()
+            painter.drawLine(QPointF(x, box.bottom()), QPointF(x, box.bottom() + 3.0))
+            words = QRectF(x - 30.0, box.bottom() + 3.0, 60.0, 12.0)
+            painter.drawText(words, Qt.AlignmentFlag.AlignCenter, tick.text)
+        if bar.scale.low < bar.scale.mark < bar.scale.high:
+            share = float(bar.scale.place(np.array([bar.scale.mark]))[0])
+            x = box.left() + share * box.width()
+            painter.setPen(QPen(self._text, 2.0))
+            painter.drawLine(QPointF(x, box.top() - 2.0), QPointF(x, box.bottom() + 4.0))
+
+
+class QuietCombo(QComboBox):
+    """A choice that the wheel turns only once it has the focus."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
+
+    def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802 - Qt's name
+        """Leave the wheel to what lies behind, without the focus."""
+        if self.hasFocus():
+            super().wheelEvent(event)
+        else:
+            event.ignore()
+
+
+class HoverCard(QFrame):
+    """What stands under the mouse; it never takes the mouse itself."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._room = parent
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setObjectName("map_card")
+        self._label = QLabel(self)
+        self._label.setTextFormat(Qt.TextFormat.RichText)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(10, 8, 10, 8)
+        layout.addWidget(self._label)
+        self.hide()
+
+    @property
+    def text(self) -> str:
+        """What the card says, with its mark-up."""
+        return self._label.text()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Colours of the card."""
+        self.setStyleSheet(
+            f"#map_card {{ background: {theme.surface}; border: 1px solid {theme.border};"
+            f" border-radius: 4px; }} #map_card QLabel {{ color: {theme.text};"
+            " font-size: 11px; background: transparent; }"
+        )
+
+    def show_card(self, card: Card, colour: QColor, theme: Theme, mouse: QPoint) -> None:
+        """Show a card beside the mouse."""
+        self._label.setText(_card_html(card, colour.name(), theme))
+        self.place(mouse)
+
+    def show_text(self, text: str, mouse: QPoint, colour: str) -> None:
+        """Show a short text beside the mouse."""
+        self._label.setText(f'<b style="color:{colour}">{text}</b>')
+        self.place(mouse)
+
+    def place(self, mouse: QPoint) -> None:
+        """Stand beside the mouse, on the side where there is room."""
+        window = self._room.window()
+        if self.parentWidget() is not window:
+            # Over the whole window: a low map has no room for a long card.
+            self.setParent(window)
+        self.adjustSize()
+        room, place = window.size(), self._room.mapTo(window, mouse)
+        x, y = place.x() + 18, place.y() + 14
+        if x + self.width() > room.width():
+            x = place.x() - 18 - self.width()
+        y = min(y, room.height() - self.height() - 4)
+        self.move(max(x, 2), max(y, 2))
+        self.show()
+        self.raise_()
+
+
+class Notice(QFrame):
+    """A sentence over the map, in the colour of what it tells; it can be clicked."""
+
+    clicked = Signal()
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._room = parent
+        self.setObjectName("map_notice")
+        self._label = QLabel(self)
+        self._label.setWordWrap(True)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(12, 6, 12, 6)
+        layout.addWidget(self._label)
+        self._theme: Theme | None = None
+        self._severity = "info"
+        parent.installEventFilter(self)
+        self.hide()
+
+    @property
+    def text(self) -> str:
+        """What it says."""
+        return self._label.text()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Colours of the sentence."""
+        self._theme = theme
+        edge = {"error": theme.error, "warning": theme.warning}.get(self._severity, theme.muted)
+        self.setStyleSheet(
+            f"#map_notice {{ background: {theme.surface}; border: 1px solid {theme.border};"
+            f" border-left: 4px solid {edge}; border-radius: 3px; }}"
+            f"#map_notice QLabel {{ color: {theme.text}; background: transparent; }}"
+        )
+
+    def tell(self, severity: str, text: str) -> None:
+        """Show a sentence."""
+        if (severity, text) != (self._severity, self.text) and self._theme is not None:
+            self._severity = severity
+            self._label.setText(text)
+            self.set_theme(self._theme)
+        self._place()
+        self.show()
+        self.raise_()
+
+    def _place(self) -> None:
+        room = self._room.width() - 120
+        wanted = self._label.fontMetrics().horizontalAdvance(self.text) + 40
+        width = max(120, min(wanted, room, 640))
+        self.setFixedWidth(width)
+        self.setFixedHeight(self._label.heightForWidth(width - 28) + 14)
+        self.move(LEFT_AXIS + max(0, (self._room.width() - LEFT_AXIS - width) // 2), 10)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
+        """Stay in the middle when the map changes its size."""
+        if event.type() == QEvent.Type.Resize and self.isVisible():
+            self._place()
+        return super().eventFilter(watched, event)
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        """Go where it happened."""
+        self.clicked.emit()
+        event.accept()
+
+
+def _card_html(card: Card, colour: str, theme: Theme) -> str:
+    tell = html.escape
+    rows = []
+    for row in card.rows:
+        tone = theme.error if row.passed is False else theme.text
+        mark = "✕" if row.passed is False else ""
+        rows.append(
+            f'<tr><td style="color:{theme.muted}">{tell(row.label)}</td>'
+            f'<td align="right" style="color:{tone}">&nbsp;&nbsp;{mark} {tell(row.value)}</td>'
+            f'<td style="color:{tone}">&nbsp;&nbsp;{tell(row.subject)}</td></tr>'
+        )
+    return (
+        f"<b>{tell(card.title)}</b><br>"
+        f'<span style="color:{colour}">■</span> {tell(card.verdict)}'
+        f'<span style="color:{theme.muted}"> · {tell(card.posture)}</span>'
+        f'<table cellspacing="0" cellpadding="1" style="margin-top:4px">{"".join(rows)}</table>'
+    )

@@ -1,0 +1,90 @@
+"""The line at the bottom: what the plan is worth, what is being done, and what went wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QProgressBar, QStatusBar
+
+from posopt_gui.controllers.session import Message, Session
+from posopt_gui.viewmodels.trouble_model import Trouble, trouble_of
+from posopt_gui.views.shell_parts import ElidedLabel
+from solver.units import MM_PER_M
+
+STAGES: Final[Mapping[str, str]] = {
+    "compiling": "Planning: compiling the kernels, once (a minute or two)",
+    "candidates": "Planning: solving and filtering the poses",
+    "meshes": "Planning: distances to meshes",
+    "nodes": "Planning: adding full turns of the joints",
+    "search": "Planning: searching the graph",
+}
+"""What the solver's stages are called."""
+
+
+class StatusLine(QObject):
+    """Puts words and a progress bar into a status bar and keeps them true."""
+
+    def __init__(self, session: Session, bar: QStatusBar) -> None:
+        super().__init__(bar)
+        self._session = session
+        self._tr = session.look.tr
+        self.words = ElidedLabel()
+        self._progress = QProgressBar()
+        self._progress.setFixedSize(180, 8)
+        self._progress.setTextVisible(False)
+        bar.addWidget(self.words, 1)
+        bar.addPermanentWidget(self._progress)
+        session.planning_changed.connect(self._on_planning)
+        session.progress.connect(self._on_progress)
+        session.message.connect(self._on_message)
+        session.result_changed.connect(self.refresh)
+        session.stale_changed.connect(self.refresh)
+        session.look.language_changed.connect(self.refresh)
+        session.look.theme_changed.connect(self.refresh)
+        self._on_planning(False)
+
+    def refresh(self, *_: object) -> None:
+        """Say how things stand."""
+        session = self._session
+        if session.planning:
+            return
+        trouble = trouble_of(None, session.plan_error, session.answer, self._tr)
+        sequence = session.sequence
+        if session.stale:
+            self.words.tell(self._tr("The inputs have changed. Plan to update."))
+        elif trouble is not None:
+            self.words.tell(_in_one_line(trouble), session.look.theme.error)
+        elif sequence is not None:
+            words = self._tr(
+                "Planned: least clearance {clearance} mm, joint cost {cost}.",
+                clearance=f"{sequence.least_clearance * MM_PER_M:.1f}",
+                cost=f"{sequence.joint_cost:.4f}",
+            )
+            self.words.tell(words)
+
+    def _on_planning(self, busy: bool) -> None:
+        self._progress.setVisible(busy)
+        self._progress.setRange(0, 0)
+        if not busy:
+            self.refresh()
+
+    def _on_progress(self, stage: str, done: int, total: int) -> None:
+        self._progress.setRange(0, 1000 if total else 0)
+        self._progress.setValue(1000 * done // max(total, 1))
+        self.words.tell(self._tr(STAGES.get(stage, "Planning…")))
+
+    def _on_message(self, message: Message) -> None:
+        session, text = self._session, message.text
+        if session.plan_error is not None and text == str(session.plan_error):
+            # The refusal is said in the window's language.
+            self.refresh()
+            return
+        theme = session.look.theme
+        colours = {"error": theme.error, "warning": theme.warning}
+        self.words.tell(text, colours.get(message.severity, ""))
+
+
+def _in_one_line(trouble: Trouble) -> str:
+    return " ".join([trouble.headline, *(one.text for one in trouble.causes[:1])])
