@@ -16,6 +16,19 @@ Translate = Callable[..., str]
 PATTERNS: Final[tuple[str, ...]] = (
     "J and L moves in order",
     "every margin kept",
+    "as in the cell",
+    "no line",
+    "the way to the first position is not checked",
+    "'{remark}' is not the cell's",
+    "Offset,PR[{number}] on contact moves alone",
+    "Offset,PR[{number}] missing or misplaced at {place}",
+    "{clearance} stands in a remark without a matching hash",
+    "{clearance} stands in a remark",
+    "a motion comes too close, see the checks above",
+    "it stops {count} times on the way, first at {place}",
+    "{place}: what happens there needs FINE, not CNT{cnt}",
+    "{place}: so close together, roundings change it",
+    "fewer positions help (--simplify TOL, or a coarser path)",
     "no pair counts",
     "no corner is rounded",
     "no L moves",
@@ -83,7 +96,7 @@ PATTERNS: Final[tuple[str, ...]] = (
     "the program name {name} has {count} characters, the controller takes {longest}",
     "a remark cannot hold Chinese characters, since the controller reads printable ASCII alone",
     "write it in Latin letters (pinyin), got {character} at character {number} of {reason}",
-    "an override needs a reason of at least {count} characters, got {reason}",
+    "an override needs a reason of at least {count} characters and at most {most}, got {reason}",
     "no program was written, since a check failed: {checks}",
     "no allowed step leads from waypoint {one} to waypoint {other}",
     "waypoint {number} has no feasible pose at all",
@@ -107,7 +120,8 @@ CHECK_NAMES: Final[tuple[str, ...]] = (
     "between positions (sampled)", "links (sampled)", "linear moves", "branch along passes",
     "lifts", "net margin", "feed", "joint speed", "steps", "events", "payload",
     "stated clearance",
-    "links at rounded corners (estimated)", "lead speed",
+    "links at rounded corners (estimated)", "lead speed", "link speed", "offset",
+    "stated frames", "accepted clearance",
 )  # fmt: skip
 """All checks by their names."""
 
@@ -115,7 +129,7 @@ UNITS: Final[tuple[str, ...]] = (
     "differing", "unreachable", "positions", "moves", "unknown", "other", "unused", "deg outside",
     "deg inside", "positions too close", "deg of J4 or J6", "changes", "mm off the line of travel",
     "% beside the asked feed", "% of its limit", "% of the bound", "places",
-    "% of the feed",
+    "% of the feed", "% of the cell's", "unproven",
 )  # fmt: skip
 """Units of the checks that are words; mm, deg, m^3 and kg are the same in every language."""
 
