@@ -22,6 +22,7 @@ from posopt_gui.actions import Actions
 from posopt_gui.controllers.session import Message, Session
 from posopt_gui.dialogs.file_questions import FileQuestions
 from posopt_gui.style import apply_theme
+from posopt_gui.views.one_flush import OneFlush
 from posopt_gui.views.places import Places
 from posopt_gui.views.shell_parts import RecentMenu
 from posopt_gui.views.status_line import StatusLine
@@ -56,6 +57,7 @@ class MainWindow(QMainWindow):
         self.setMinimumSize(1024, 680)
         self.resize(1440, 900)
         self.setAcceptDrops(True)
+        OneFlush(self)
         self.actions_table = Actions(self, session.look)
         self._menus = self.actions_table.fill(self.menuBar())
         self._recent = RecentMenu(self)
@@ -286,7 +288,7 @@ class MainWindow(QMainWindow):
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802 - Qt's name
         """Take files."""
-        if event.mimeData().hasUrls():
+        if any(url.isLocalFile() for url in event.mimeData().urls()):
             event.acceptProposedAction()
 
     def dropEvent(self, event: QDropEvent) -> None:  # noqa: N802 - Qt's name

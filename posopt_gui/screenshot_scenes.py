@@ -29,9 +29,12 @@ WAYPOINT: Final = 16
 
 EVERY_LINE: Final = (*(scheme.value for scheme in Scheme), CONSTANT)
 
-STRANGE_PATH: Final = "pos_a;pos_b;height;along\n" + "".join(
-    f"{-400 + 16 * n};13.5;{-128 + 0.2 * n:.1f};{n}\n" for n in range(30)
+STRANGE_PATH: Final = "no;pos_a;pos_b;height;na;nb;nc\n" + "".join(
+    f"{n + 1};{-400 + 16 * n};13.5;{-80 + 0.2 * n:.1f};0;1;0\n" for n in range(30)
 )
+"""A path whose header says nothing that is known."""
+
+STRANGE_COLUMNS: Final = ("x", "y", "z", "nx", "ny", "nz")
 
 
 @dataclass(frozen=True, slots=True)
@@ -278,6 +281,9 @@ def _columns(stage: Stage) -> QWidget:
     stage.window.setup.path.questions.emit(preview)
     dialog = stage.window.setup_dialogs.path
     assert dialog is not None
+    for column, field in enumerate(STRANGE_COLUMNS):
+        dialog.set_column(column + 1, field)
+    stage.wait(dialog.accept_button.isEnabled, "the path")
     return dialog
 
 

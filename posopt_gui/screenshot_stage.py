@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from PySide6.QtCore import QEvent, QPoint, QPointF, QSettings, Qt, QTimer
+from PySide6.QtCore import QEvent, QPoint, QPointF, QRect, QSettings, Qt, QTimer
 from PySide6.QtGui import QImage, QMouseEvent, QPainter, QRegion
 from PySide6.QtWidgets import QApplication, QWidget
 
@@ -26,6 +26,10 @@ PATIENCE = 300.0
 
 QUIET = 0.15
 """How long nothing may happen before a picture is taken [s]."""
+
+
+OVERLAYS = {"hint", "map_card"}
+"""Names of what lies over the whole window."""
 
 
 class Stage:
@@ -167,28 +171,30 @@ class Stage:
 
 
 def picture(widget: QWidget) -> QImage:
-    """What a widget shows, with the 3D views inside as OpenGL has drawn them.
+    """What a widget shows, with what lies over it, and with the 3D view as OpenGL has drawn it.
 
     `QWidget.grab` loses the words in an OpenGL view, so that the view's own picture is drawn
     over it, and what lies over the view once more over that.
     """
-    image = widget.grab().toImage()
-    scenes = [one for one in widget.findChildren(SceneView) if one.isVisibleTo(widget)]
-    if isinstance(widget, SceneView):
-        scenes.append(widget)
+    window = widget.window()
+    image = window.grab().toImage()
     painter = QPainter(image)
-    for scene in scenes:
+    for scene in window.findChildren(SceneView):
         canvas = scene.canvas
-        if canvas is None or not canvas.isValid():
+        if canvas is None or not canvas.isValid() or not scene.isVisibleTo(window):
             continue
-        place = canvas.mapTo(widget, QPoint()) if canvas is not widget else QPoint()
-        painter.drawImage(place, canvas.grabFramebuffer())
-        over = [one for one in scene.findChildren(QWidget) if one.parent() is scene]
-        bubbles = [one for one in widget.children() if one.objectName() == "hint"]
-        for one in [*over, *bubbles]:
-            if isinstance(one, QWidget) and one is not canvas and one.isVisibleTo(widget):
-                place = one.mapTo(widget, QPoint())
+        painter.drawImage(canvas.mapTo(window, QPoint()), canvas.grabFramebuffer())
+        above = [one for one in scene.children() if one is not canvas]
+        above += [one for one in window.children() if one.objectName() in OVERLAYS]
+        for one in above:
+            if isinstance(one, QWidget) and one.isVisibleTo(window):
+                place = one.mapTo(window, QPoint())
                 # Without the ground that Qt would draw below rounded corners.
                 one.render(painter, place, QRegion(), QWidget.RenderFlag.DrawChildren)
     painter.end()
-    return image
+    if widget is window:
+        return image
+    scale = image.devicePixelRatio()
+    corner = widget.mapTo(window, QPoint()) * scale
+    size = widget.size() * scale
+    return image.copy(QRect(corner, size))

@@ -169,6 +169,11 @@ QTableView, QTreeView, QListView {{ background: {theme.surface}; border: 1px sol
     selection-background-color: {theme.selection}; selection-color: {theme.text}; }}
 QHeaderView::section {{ background: {theme.raised}; color: {theme.muted}; border: none;
     border-right: 1px solid {theme.border}; padding: 4px 6px; font-weight: bold; }}
+QHeaderView::up-arrow, QHeaderView::down-arrow {{ image: none; width: 0; height: 0;
+    subcontrol-origin: border; subcontrol-position: top center;
+    border-left: 4px solid {theme.raised}; border-right: 4px solid {theme.raised}; }}
+QHeaderView::up-arrow {{ border-bottom: 4px solid {theme.accent}; }}
+QHeaderView::down-arrow {{ border-top: 4px solid {theme.accent}; }}
 QScrollBar:vertical {{ background: {theme.window}; width: 11px; margin: 0; }}
 QScrollBar::handle:vertical {{ background: {theme.border}; min-height: 24px; border-radius: 5px; }}
 QScrollBar:horizontal {{ background: {theme.window}; height: 11px; margin: 0; }}

@@ -63,6 +63,12 @@ class Camera:
         place: FloatArray = self.centre + self.distance * self.axes[2]
         return place
 
+    def same_as(self, other: Camera) -> bool:
+        """Whether both see the same."""
+        mine = (self.distance, self.azimuth, self.elevation, self.field)
+        others = (other.distance, other.azimuth, other.elevation, other.field)
+        return mine == others and bool(np.allclose(self.centre, other.centre, atol=1e-9))
+
     def ray(self, x: float, y: float, width: float, height: float) -> tuple[FloatArray, FloatArray]:
         """Origin and unit direction of the ray through a pixel of a picture of this size."""
         half = math.tan(math.radians(self.field) / 2.0)

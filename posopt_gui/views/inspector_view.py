@@ -69,9 +69,9 @@ class InspectorView(QScrollArea):
         self._column.setSpacing(4)
         head = QGridLayout()
         head.addWidget(self.title, 0, 0)
-        head.addWidget(self.verdict, 0, 1, Qt.AlignmentFlag.AlignRight)
-        head.addWidget(self.subtitle, 1, 0, 1, 2)
-        head.setColumnStretch(0, 1)
+        head.addWidget(self.subtitle, 1, 0)
+        # In a row of its own: the longest verdict is as wide as the panel.
+        head.addWidget(self.verdict, 2, 0, Qt.AlignmentFlag.AlignLeft)
         font = self.title.font()
         font.setPointSizeF(1.35 * font.pointSizeF())
         font.setBold(True)

@@ -204,6 +204,8 @@ class ResultsView(QWidget):
         if fitted != self._fitted and (self._nearest.names or self._fitted is None):
             self._fitted = fitted
             self.table.resizeColumnsToContents()
+            # Room for the sign of the order beside the short head.
+            self.table.setColumnWidth(0, max(self.table.columnWidth(0), 64))
 
     def _show_schemes(self) -> None:
         result = self._session.result
@@ -218,8 +220,11 @@ class ResultsView(QWidget):
         self.schemes.setHorizontalHeaderLabels(list(shown.heads))
         self.schemes.setVerticalHeaderLabels([label for label, _ in shown.rows])
         header = self.schemes.horizontalHeader()
-        widths = (header.sectionSizeHint(column) for column in range(header.count()))
-        header.setMinimumSectionSize(max(widths, default=40))
+        widest = max((header.sectionSizeHint(one) for one in range(header.count())), default=0)
+        # Equally wide where that cuts no head.
+        room = self.schemes.viewport().width() >= widest * header.count()
+        modes = QHeaderView.ResizeMode
+        header.setSectionResizeMode(modes.Stretch if room else modes.ResizeToContents)
         for row, (_, texts) in enumerate(shown.rows):
             for column, text in enumerate(texts):
                 item = QTableWidgetItem(text)

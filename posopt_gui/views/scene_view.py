@@ -48,6 +48,7 @@ class SceneView(QWidget):
         self._report: PoseReport | None = None
         self._failure = ""
         self._fitted = False
+        self._fitted_camera: Camera | None = None
         self._pool = QThreadPool(self)
         self._pool.setMaxThreadCount(1)
         self._cells = JobLine(self._pool, self)
@@ -192,6 +193,7 @@ class SceneView(QWidget):
             above = min((self._tools.height() + 12) / max(canvas.height(), 1), 0.4)
             camera = fitted(corners, azimuth, elevation, canvas.aspect, FIELD_OF_VIEW, above)
             canvas.set_camera(camera)
+            self._fitted_camera = canvas.camera
 
     def _close_up(self, cell: CellModel) -> Camera:
         from solver.kinematics.arm import forward  # noqa: PLC0415 - loads the kernels
@@ -408,7 +410,13 @@ class SceneView(QWidget):
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         """Keep the bar in its corner and the notes in theirs."""
         super().resizeEvent(event)
+        fitted_before = self._fitted_camera
         self._lay_out()
+        # What nobody has turned or moved since it was fitted stays fitted.
+        if self._canvas is not None and fitted_before is not None:
+            seen = self._canvas.camera
+            if seen.same_as(fitted_before):
+                QTimer.singleShot(0, self, self.fit)
 
     def _lay_out(self) -> None:
         self._tools.fit_into(self.width() - 16)

@@ -9,9 +9,9 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QProgressBar, QStatusBar
 
 from posopt_gui.controllers.session import Message, Session
+from posopt_gui.viewmodels.number_words import clearance_mm
 from posopt_gui.viewmodels.trouble_model import Trouble, trouble_of
 from posopt_gui.views.shell_parts import ElidedLabel
-from solver.units import MM_PER_M
 
 STAGES: Final[Mapping[str, str]] = {
     "compiling": "Planning: compiling the kernels, once (a minute or two)",
@@ -59,7 +59,7 @@ class StatusLine(QObject):
         elif sequence is not None:
             words = self._tr(
                 "Planned: least clearance {clearance} mm, joint cost {cost}.",
-                clearance=f"{sequence.least_clearance * MM_PER_M:.1f}",
+                clearance=clearance_mm(sequence.least_clearance),
                 cost=f"{sequence.joint_cost:.4f}",
             )
             self.words.tell(words)

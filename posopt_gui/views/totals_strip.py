@@ -4,16 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence as Rows
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QGridLayout, QLabel, QWidget
 
 from posopt_gui.theme import LIGHT, Theme
 from posopt_gui.viewmodels.results_model import Total
 from posopt_gui.views.result_tables import tabular
 
+SPACING = 18
+"""Room between two numbers [px]."""
+
+LEAST_WIDTH = 240
+
 
 class TotalsStrip(QWidget):
-    """Numbers side by side; one that stands for a waypoint can be clicked."""
+    """Numbers side by side; one that stands for a waypoint can be clicked.
+
+    Where there is no room for all, the last ones are left out; the inspector has them too.
+    """
 
     waypoint_wanted = Signal(int)
 
@@ -25,7 +34,8 @@ class TotalsStrip(QWidget):
         self._waypoint = "{number}"
         self._grid = QGridLayout(self)
         self._grid.setContentsMargins(10, 8, 10, 6)
-        self._grid.setHorizontalSpacing(18)
+        self._grid.setHorizontalSpacing(SPACING)
+        self._grid.setSizeConstraint(QGridLayout.SizeConstraint.SetNoConstraint)
         self._grid.setVerticalSpacing(1)
         self._names: list[QLabel] = []
         self._values: list[QLabel] = []
@@ -56,6 +66,29 @@ class TotalsStrip(QWidget):
         self._stale.setVisible(stale and bool(self._totals))
         for label in (*self._names, *self._values):
             label.setEnabled(not stale)
+        self._fit()
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        """The window must not become wider because of the numbers."""
+        return QSize(LEAST_WIDTH, super().minimumSizeHint().height())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        """Show as many numbers as there is room for."""
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        beside = (self._stale, self._empty)
+        room = (
+            self.width()
+            - 20
+            - sum(one.sizeHint().width() for one in beside if not one.isHidden() and one.text())
+        )
+        for index, (name, value) in enumerate(zip(self._names, self._values, strict=True)):
+            room -= max(name.sizeHint().width(), value.sizeHint().width()) + SPACING
+            shown = index < len(self._totals) and (room + SPACING >= 0 or index == 0)
+            name.setVisible(shown)
+            value.setVisible(shown)
 
     def _show(self) -> None:
         while len(self._names) < len(self._totals):
@@ -71,11 +104,8 @@ class TotalsStrip(QWidget):
             "good": self._theme.good, "near": self._theme.warning, "bad": self._theme.error,
         }  # fmt: skip
         for index, (name, value) in enumerate(zip(self._names, self._values, strict=True)):
-            shown = index < len(self._totals)
-            name.setVisible(shown)
-            value.setVisible(shown)
-            if not shown:
-                continue
+            if index >= len(self._totals):
+                break
             total = self._totals[index]
             name.setText(total.label)
             name.setStyleSheet(f"color: {self._theme.muted};")
@@ -90,6 +120,7 @@ class TotalsStrip(QWidget):
             value.setText(text)
             value.setStyleSheet(f"color: {colour}; font-weight: 600;")
             value.setAccessibleName(f"{total.label} {total.value}")
+        self._fit()
 
     def _add(self) -> None:
         column = len(self._names)
