@@ -142,6 +142,7 @@ def test_no_chinese_text_is_left_over():
     assert [text for text in CHINESE if not is_said(text)] == []
 
 
+@pytest.mark.long
 def test_a_whole_session_in_chinese_shows_no_english(qapp, tmp_path, monkeypatch):
     """What is put together while it runs is recorded where it has no Chinese text."""
     from posopt_gui.screenshot_stage import Stage
