@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QThreadPool, QTimer, Signal, SignalInstance
 
+from posopt_gui.controllers.session_jobs import Planned, answered_by, checked_by, planned_by
 from posopt_gui.document.document import Document
 from posopt_gui.document.project import ProjectState
 from posopt_gui.look import Look
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from solver.model.problem import PlanningProblem
     from solver.pipeline.program_check import ProgramReport
     from solver.pipeline.replanning import Replanned
-    from solver.progress import Monitor
 
 BUILD_DELAY = 30
 """How long the session waits for further changes before it reads the inputs [ms]."""
@@ -47,15 +47,6 @@ class Message:
     severity: str
     text: str
     waypoint: int | None = None
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Planned:
-    """Answer of a planning job."""
-
-    state: ProjectState
-    result: PlanningResult
-    answer: Replanned | None
 
 
 class Session(QObject):
@@ -217,7 +208,7 @@ class Session(QObject):
         state, schemes = self.document.state, self.compared
         self._ordered = state
         self._checks.stop()
-        self._plans.submit(lambda monitor: _plan(state, schemes, monitor))
+        self._plans.submit(lambda monitor: planned_by(state, schemes, monitor))
 
     def stop(self) -> None:
         """Cancel planning."""
@@ -300,7 +291,7 @@ class Session(QObject):
         result = self.chosen_result
         if result is None or (self._answer is not None and self._answer.sequence is None):
             return
-        self._checks.submit(lambda monitor: _check(result, monitor))
+        self._checks.submit(lambda monitor: checked_by(result, monitor))
 
     def say(self, message: Message) -> None:
         """Show a sentence."""
@@ -349,7 +340,7 @@ class Session(QObject):
         self._problem, self._problem_error = None, error
         self._announce(self.problem_changed)
 
-    def _planned(self, planned: _Planned) -> None:
+    def _planned(self, planned: Planned) -> None:
         # An answer that is still being worked out belongs to the plan before.
         self._wishes.stop()
         self._checks.stop()
@@ -396,7 +387,7 @@ class Session(QObject):
             return
         self._asked = (pins, regions)
         self._wishes.submit(
-            lambda monitor: _answer(result, pins, regions, monitor), cancel_running=False
+            lambda monitor: answered_by(result, pins, regions, monitor), cancel_running=False
         )
 
     def _answered(self, answer: Replanned | None) -> None:
@@ -427,24 +418,3 @@ class Session(QObject):
 
 def _inputs(state: ProjectState) -> tuple[object, object]:
     return state.cell, state.files
-
-
-def _plan(state: ProjectState, schemes: tuple[Scheme, ...], monitor: Monitor) -> _Planned:
-    from solver.pipeline.planning import plan  # noqa: PLC0415 - numba is loaded when it is needed
-
-    result = plan(state.problem(), monitor, compare=schemes)
-    return _Planned(state, result, _answer(result, state.pins, state.regions, monitor))
-
-
-def _answer(
-    result: PlanningResult, pins: tuple[Pin, ...], regions: tuple[Region, ...], monitor: Monitor
-) -> Replanned | None:
-    from solver.pipeline.replanning import replan  # noqa: PLC0415
-
-    return replan(result, pins, regions, monitor) if pins or regions else None
-
-
-def _check(result: PlanningResult, monitor: Monitor) -> ProgramReport:
-    from solver.pipeline.programming import ProgramOrder, draft_program  # noqa: PLC0415
-
-    return draft_program(result, ProgramOrder(), monitor=monitor).report

@@ -6,12 +6,14 @@ import re
 from collections.abc import Callable
 from collections.abc import Sequence as Rows
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from posopt_gui.viewmodels.number_words import decimal, subject_words
 from solver.errors import InputError, PosoptError
-from solver.pipeline.replanning import Replanned
 from solver.units import DEG_PER_RAD
+
+if TYPE_CHECKING:
+    from solver.pipeline.replanning import Replanned
 
 _IN_ALL = re.compile(r"; (\d+) waypoints in all have none")
 

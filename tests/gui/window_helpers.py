@@ -47,7 +47,7 @@ class Person(NoQuestions):
         return self.name
 
 
-def wait(condition: Callable[[], Any], seconds: float = 120.0) -> None:
+def wait(condition: Callable[[], Any], seconds: float = 600.0) -> None:
     """Let the window live until something holds; the time limit is no statement about speed."""
     end = time.monotonic() + seconds
     while not condition():

@@ -1,4 +1,4 @@
-"""The window's placeholder starts, and says in one sentence when it cannot."""
+"""The window starts, and says in one sentence when it cannot."""
 
 from __future__ import annotations
 
@@ -28,10 +28,43 @@ def run_window(environment: dict[str, str], *arguments: str) -> subprocess.Compl
     )
 
 
-def test_window_opens_and_closes_with_exit_code_zero():
-    done = run_window({"QT_QPA_PLATFORM": "offscreen"}, "--smoke")
+@pytest.fixture
+def offscreen(tmp_path):
+    """A platform without a screen, and folders of the test for what the window writes."""
+    folders = ("XDG_DATA_HOME", "XDG_CONFIG_HOME")
+    return {"QT_QPA_PLATFORM": "offscreen"} | {name: str(tmp_path) for name in folders}
+
+
+def test_window_opens_and_closes_with_exit_code_zero(offscreen):
+    done = run_window(offscreen, "--smoke")
     assert done.returncode == 0, done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_window_opens_the_cell_that_is_named_in_a_chosen_look(offscreen):
+    look = ("--language", "zh_CN", "--theme", "dark")
+    done = run_window(offscreen, "groove_paper", *look, "--smoke")
+    assert done.returncode == 0, done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("name", ["nowhere.posopt", "no_such_cell", "broken.posopt"])
+def test_a_file_that_cannot_be_opened_is_one_sentence_and_exit_code_two(offscreen, tmp_path, name):
+    (tmp_path / "broken.posopt").write_text("{", encoding="utf-8")
+    file = tmp_path / name
+    done = run_window(offscreen, str(file) if file.suffix else name, "--smoke")
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.count("\n") == 1
+    assert done.stderr.startswith("posopt-gui: ")
+    assert name in done.stderr
+
+
+def test_what_the_command_takes_is_told_without_a_display():
+    done = run_window({}, "--help")
+    assert done.returncode == 0
+    for word in ("CELL|PROJECT", "--language", "--theme"):
+        assert word in done.stdout
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux lacks a display")
@@ -42,6 +75,23 @@ def test_missing_display_is_one_sentence_and_exit_code_two():
     assert done.stderr.count("\n") == 1
     assert "no display" in done.stderr
     assert "posopt plan" in done.stderr
+
+
+def test_the_frame_of_the_window_needs_neither_kernels_nor_plots_nor_opengl():
+    # They take seconds to load; the window is on screen before.
+    program = "import sys, posopt_gui.start; print(*sorted(sys.modules))"
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=REPOSITORY,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    loaded = set(done.stdout.split())
+    assert "PySide6.QtWidgets" in loaded
+    assert loaded.isdisjoint({"numba", "pyqtgraph", "OpenGL", "trimesh", "fcl", "scipy"})
 
 
 def test_qt_calls_do_not_drop_references_to_none():
