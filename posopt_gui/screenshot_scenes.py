@@ -306,6 +306,17 @@ def _no_hints(stage: Stage) -> None:
     stage.window.hints.close_all()
 
 
+def _guide(stage: Stage) -> QWidget:
+    stage.window.open_guide()
+    stage.run_for(0.5)
+    return stage.window.guide or stage.window
+
+
+def _no_guide(stage: Stage) -> None:
+    if stage.window.guide is not None:
+        stage.window.guide.hide()
+
+
 def _passes(stage: Stage) -> None:
     stage.open(state_of_cell("zigzag_hw250"))
 
@@ -360,6 +371,7 @@ SCENES: Final[tuple[Scene, ...]] = (
     Scene("export_passed", "the export dialog, all checks passed", _export, _no_export),
     Scene("export_refused", "the export dialog, refused", _export, _no_export,
           begin=_refused, end=_undone),
+    Scene("guide", "the user guide", _guide, _no_guide),
     Scene("window_stale", "inputs have changed", _window, begin=_stale, end=_undone),
     Scene("window_no_sequence", "no sequence, and why", _window, begin=_infeasible, end=_undone),
     Scene("window_passes", "three passes on two flanges and the web", _window, begin=_passes,

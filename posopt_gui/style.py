@@ -117,7 +117,7 @@ QStatusBar::item {{ border: none; }}
 QStatusBar QLabel {{ padding: 0 6px; }}
 QStatusBar QToolButton {{ padding: 1px 8px; color: {theme.muted}; }}
 QTabWidget::pane {{ border: none; border-top: 1px solid {theme.border}; }}
-QTabBar::tab {{ background: transparent; color: {theme.muted}; padding: 6px 9px; border: none;
+QTabBar::tab {{ background: transparent; color: {theme.muted}; padding: 6px 8px; border: none;
     border-bottom: 2px solid transparent; }}
 QTabBar::tab:selected {{ color: {theme.text}; border-bottom-color: {theme.accent}; }}
 QTabBar::tab:hover {{ color: {theme.text}; }}

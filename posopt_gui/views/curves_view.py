@@ -123,6 +123,8 @@ class CurvesView(QWidget):
         self.tabs = QTabWidget()
         self.tabs.setDocumentMode(True)
         self.tabs.tabBar().setDrawBase(False)
+        # All seven names beside the legend in the smallest window.
+        self.tabs.setStyleSheet("QTabBar::tab { padding: 6px 5px; }")
         for page in (
             self._scroll, self.clearance_plot, self.manipulability_plot, self.step_plot,
             self.feed, self.bars, self.table,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence as Rows
 from dataclasses import dataclass
 
@@ -30,6 +31,12 @@ class Text:
     def html_below(self) -> str:
         """The smaller line as rich text."""
         return f'<span style="color:{self.below_colour}">{self.below}</span>'
+
+
+ONE_LINE = 30
+"""Most characters of words that stand in one line."""
+
+_TAGS = re.compile("<[^>]*>")
 
 
 class LabelGrid(QWidget):
@@ -67,13 +74,17 @@ class LabelGrid(QWidget):
             below.setVisible(lower is not None)
             if lower is not None:
                 below.setText(lower.html_below)
+            height = Qt.AlignmentFlag.AlignTop
+            if shown and len(_TAGS.sub("", self._rows[index][1].words)) <= ONE_LINE:
+                # Chinese lines are higher than those of numbers: they share their middle.
+                height = Qt.AlignmentFlag.AlignVCenter
             for column, label in enumerate(labels):
                 label.setVisible(shown)
                 if shown:
                     text = self._rows[index][column]
                     label.setText(text.html)
                     side = Qt.AlignmentFlag.AlignRight if text.right else Qt.AlignmentFlag.AlignLeft
-                    label.setAlignment(side | Qt.AlignmentFlag.AlignTop)
+                    label.setAlignment(side | height)
 
     def _add(self) -> None:
         row = []
