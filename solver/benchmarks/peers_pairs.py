@@ -11,7 +11,7 @@ from solver.benchmarks.peers_bracket import PosedBody, posed
 from solver.candidates.generate import CandidateSet
 from solver.collision.kernels_scene import all_distances
 from solver.collision.kernels_shapes import BOX, CYLINDER
-from solver.collision.scene import PackedBodies
+from solver.collision.packed import PackedBodies
 from solver.kinematics.kernels_arm import forward_frames
 from solver.transforms import FloatArray, IntArray
 

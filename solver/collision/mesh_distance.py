@@ -186,11 +186,6 @@ def _boxes(
     return centre, np.abs(turn) @ (0.5 * (proxy.high - proxy.low))
 
 
-def lower_bound(proxy: ConvexProxy, proxy_pose: FloatArray, obstacle: MeshObstacle) -> float:
-    """Certified lower bound [m] of :func:`mesh_clearance`, of one pose, from boxes alone."""
-    return float(lower_bounds(proxy, proxy_pose, obstacle))
-
-
 def clearances(
     proxy: ConvexProxy, poses: FloatArray, obstacle: MeshObstacle, cutoff: float = math.inf
 ) -> FloatArray:

@@ -15,12 +15,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from solver.collision.distance import pack_shape
+from solver.collision.packed import PackedBodies, PackedScene
 from solver.kinematics.arm import link_offsets
 from solver.model.problem import PlanningProblem
 from solver.model.robot import FLOOR_GROUP, TOOL_GROUP
@@ -37,54 +38,12 @@ from solver.model.shapes import (
 )
 from solver.transforms import FloatArray, IntArray, inverse, rigid
 
+if TYPE_CHECKING:
+    from solver.collision.mesh_distance import MeshObstacle
+    from solver.collision.mesh_proxy import ConvexProxy
+
 NO_PAIR, CLEARANCE, MARGIN, CONTACT = 0, 1, 2, 3
 NO_TOUCH = -1
-
-
-class PackedBodies(NamedTuple):
-    """Bodies as arrays; rows of hulls' vertices are `vertices[start:stop]` in the body frame."""
-
-    kind: IntArray
-    size: FloatArray
-    rotation: FloatArray
-    position: FloatArray
-    start: IntArray
-    stop: IntArray
-    vertices: FloatArray
-
-
-class PackedScene(NamedTuple):
-    """What the kernels read; all poses of fixed bodies are in fanuc_world.
-
-    `frame` (m,) is the D-H frame that carries each moving body, `radius` (m,) that of the
-    sphere about its origin that contains it; rows from `tool` on belong to the tool.
-    `bound` holds a simple body around each fixed one, for culling: itself, or a box for a hull.
-    Fixed bodies are ordered by cluster; `cluster_*` are boxes around them for culling.
-    `rule`, `threshold` are (m, f);
-    `touch_group` (f,) numbers the workpiece's groups (-1 elsewhere); `depth` (m,) belongs to
-    contact bodies; `widest` (m,) is the largest threshold of a row, -inf where it has only
-    clearance rules; `self_pairs` (p, 2) are rows of the moving bodies.
-    """
-
-    frame: IntArray
-    radius: FloatArray
-    tool: int
-    moving: PackedBodies
-    fixed: PackedBodies
-    bound: PackedBodies
-    cluster_half: FloatArray
-    cluster_rotation: FloatArray
-    cluster_position: FloatArray
-    cluster_start: IntArray
-    cluster_stop: IntArray
-    cluster_rules: NDArray[np.bool_]
-    rule: IntArray
-    threshold: FloatArray
-    touch_group: IntArray
-    depth: FloatArray
-    widest: FloatArray
-    self_pairs: IntArray
-    self_margin: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -122,7 +81,7 @@ class MeshRule:
         return self.rule == CLEARANCE
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class CollisionScene:
     """The packed scene with the names behind its rows.
 
@@ -138,6 +97,21 @@ class CollisionScene:
     meshes: tuple[tuple[BodyLabel, Mesh, FloatArray], ...]
     mesh_rules: tuple[MeshRule, ...]
     touch_names: tuple[str, ...]
+
+    @cached_property
+    def mesh_obstacles(self) -> tuple[MeshObstacle, ...]:
+        """The meshes with their search structures, made once."""
+        # python-fcl and trimesh are loaded only where a scene holds meshes.
+        from solver.collision.mesh_distance import MeshObstacle  # noqa: PLC0415
+
+        return tuple(MeshObstacle(mesh, pose) for _, mesh, pose in self.meshes)
+
+    @cached_property
+    def mesh_proxies(self) -> tuple[ConvexProxy, ...]:
+        """Polyhedra that contain the moving bodies, for distances to meshes."""
+        from solver.collision.mesh_proxy import ConvexProxy  # noqa: PLC0415
+
+        return tuple(ConvexProxy(shape) for shape in self.shapes)
 
     def touch_number(self, group: str) -> int:
         """The number of a workpiece group, -1 for none."""

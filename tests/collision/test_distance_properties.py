@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from solver.collision.distance import distance
 from solver.collision.kernels_bound import quick_lower_bound, row_lower_bound
 from solver.collision.kernels_distance import convex_distance, row_distance
-from solver.collision.scene import PackedBodies
+from solver.collision.packed import PackedBodies
 from solver.model.shapes import Box, Capsule, Cylinder, Hull, Sphere
 from solver.transforms import rigid, rotation_from_quaternion
 

@@ -16,7 +16,6 @@ from mesh_oracle import (
 from solver.collision.mesh_distance import (
     MeshObstacle,
     clearances,
-    lower_bound,
     lower_bounds,
     mesh_clearance,
 )
@@ -233,7 +232,6 @@ def test_bounds_by_boxes_never_exceed_the_clearance():
         bounds = lower_bounds(proxy, poses, obstacle)
         assert (bounds <= np.array(true) + 1e-12).all()
         assert np.isfinite(bounds).any()
-        assert lower_bound(proxy, poses[3], obstacle) == bounds[3]
 
 
 def test_many_poses_give_the_clearance_below_the_cutoff_and_a_bound_above_it():
