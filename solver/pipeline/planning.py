@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solver.analysis.diagnosis import no_sequence
 from solver.analysis.result import PlanningResult, Sequence, sequence_of
@@ -140,16 +141,9 @@ def exact_sequence(
     """
     clearance = candidates.nodes.clearance
     hard = candidates.problem.settings.safety_distance
-    allowed = clearance >= hard
-    while True:
-        found = _search_allowed(graph, allowed, monitor)
-        if found is None:
-            break
-        outcome, nodes, extra = found
-        low = nodes[rounded_clearance(candidates, nodes) < hard]
-        if not len(low):
-            return sequence_of(candidates, Scheme.EXACT, nodes, outcome.cost), extra, hard
-        allowed = allowed & ~np.isin(np.arange(len(clearance)), low)
+    kept = optimum_among(candidates, graph, clearance >= hard, hard, monitor)
+    if kept is not None:
+        return *kept, hard
     hard = best_minimum_clearance(graph, clearance, monitor)
     found = _search_allowed(graph, clearance >= hard, monitor) if hard > -np.inf else None
     if found is None:
@@ -158,8 +152,31 @@ def exact_sequence(
     return sequence_of(candidates, Scheme.EXACT, nodes, outcome.cost), extra, float(hard)
 
 
+def optimum_among(
+    candidates: CandidateSet,
+    graph: LayeredGraph,
+    allowed: NDArray[np.bool_],
+    least: float,
+    monitor: Monitor,
+) -> tuple[Sequence, FloatArray] | None:
+    """The cheapest sequence of allowed nodes (k,) and the extra costs of all; None without one.
+
+    Joints are exported rounded: nodes whose rounded joints fall under the clearance `least` [m]
+    are left out too.
+    """
+    while True:
+        found = _search_allowed(graph, allowed, monitor)
+        if found is None:
+            return None
+        outcome, nodes, extra = found
+        low = nodes[rounded_clearance(candidates, nodes) < least]
+        if not len(low):
+            return sequence_of(candidates, Scheme.EXACT, nodes, outcome.cost), extra
+        allowed = allowed & ~np.isin(np.arange(len(allowed)), low)
+
+
 def _search_allowed(
-    graph: LayeredGraph, allowed: np.ndarray[tuple[int], np.dtype[np.bool_]], monitor: Monitor
+    graph: LayeredGraph, allowed: NDArray[np.bool_], monitor: Monitor
 ) -> tuple[ExactResult, IntArray, FloatArray] | None:
     """Exact search among the allowed nodes, in the numbers of the whole graph."""
     reduced, parent = graph.subgraph(allowed)

@@ -1,7 +1,8 @@
 """Planning again through what a person asked for: pinned places and forbidden regions.
 
 The graph of the first plan is searched again without the nodes that the wishes exclude, so an
-answer takes as long as one exact search.
+answer takes as long as one exact search, or two where the cheapest would change its branch
+within a pass.
 """
 
 from __future__ import annotations
@@ -12,14 +13,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.analysis.result import PlanningResult, Sequence, sequence_of
+from solver.analysis.check import down_mm
+from solver.analysis.result import PlanningResult, Sequence
+from solver.candidates.outcomes import Outcome
 from solver.model.settings import Scheme
 from solver.model.wishes import Pin, Region
+from solver.pipeline.planning import changes_branch, layered_graph, optimum_among
 from solver.progress import Monitor, SilentMonitor
-from solver.search.exact import ExactResult, exact
 from solver.search.graph import LayeredGraph
 from solver.search.reachability import diagnose_cut
 from solver.transforms import FloatArray
+from solver.units import DEG_PER_RAD, MM_PER_M
 
 ANGLE_SLACK = 1e-9
 """How far an angle may lie from a pinned one [rad]."""
@@ -83,7 +87,8 @@ def replan(
 ) -> Replanned:
     """Find the cheapest sequence through pins and around regions, with its price.
 
-    The price is the difference of the exact costs with and without the wishes.
+    As in the plan, no pass changes its branch. The price is the difference of the exact costs
+    with and without the wishes.
 
     Raises
     ------
@@ -92,30 +97,68 @@ def replan(
     """
     monitor = monitor or SilentMonitor()
     allowed = allowed_nodes(result, pins, regions)
-    graph, parent = result.graph.subgraph(allowed)
-    nothing = np.full(len(allowed), np.inf)
-    empty = np.flatnonzero(np.diff(graph.offsets) == 0)
+    beyond = _beyond(result, pins, regions)
+    if beyond:
+        return _no_answer(result, len(result.problem.toolpath) - 1, beyond)
+    # Where even the best minimum is under the safety distance, nothing can be spared for rounding.
+    least = result.hard_minimum if result.clearance_met else -np.inf
+    found = optimum_among(result.candidates, result.graph, allowed, least, monitor)
+    if found is None:
+        return _blocked(result, result.graph, allowed, pins)
+    if changes_branch(found[0], result.problem):
+        bound = layered_graph(result.candidates, one_branch=True)
+        found = optimum_among(result.candidates, bound, allowed, least, monitor)
+        if found is None:
+            return _blocked(result, bound, allowed, pins)
+    sequence, extra = found
+    unbound = result.sequences.get(Scheme.EXACT)
+    return Replanned(sequence, sequence.cost - (unbound.cost if unbound else 0.0), extra)
+
+
+def _blocked(
+    result: PlanningResult, graph: LayeredGraph, allowed: NDArray[np.bool_], pins: Rows[Pin]
+) -> Replanned:
+    """Where the allowed nodes break, and why."""
+    reduced, _ = graph.subgraph(allowed)
+    empty = np.flatnonzero(np.diff(reduced.offsets) == 0)
     if len(empty):
         layer = int(empty[0])
-        return Replanned(None, np.inf, nothing, layer, _empty_reason(result, layer, pins))
-    outcome = exact(graph, monitor)
-    if not outcome.found:
-        layer = _cut_layer(graph)
+        return _no_answer(result, layer, _empty_reason(result, layer, pins))
+    cut = diagnose_cut(reduced)
+    if cut is None:
+        reason = "rounded to the program's decimals, every sequence comes nearer than is kept"
+        return _no_answer(result, 0, f"{reason}; try other wishes")
+    layer = int(cut.gaps[0].gap)
+    if graph is result.graph:
         reason = f"no allowed step leads from waypoint {layer + 1} to waypoint {layer + 2}"
-        return Replanned(None, np.inf, nothing, layer + 1, reason)
-    return _answer(result, outcome, parent, nothing)
+    else:
+        reason = (
+            f"the branch would have to change between waypoints {layer + 1} and {layer + 2}, "
+            "within a pass; pin poses of one branch"
+        )
+    return _no_answer(result, layer + 1, reason)
 
 
-def _answer(
-    result: PlanningResult, outcome: ExactResult, parent: NDArray[np.int64], extra: FloatArray
-) -> Replanned:
-    extra[parent] = outcome.extra_cost
-    sequence = sequence_of(
-        result.candidates, Scheme.EXACT, parent[outcome.path], float(outcome.cost)
-    )
-    unbound = result.sequences.get(Scheme.EXACT)
-    price = float(outcome.cost) - (unbound.cost if unbound is not None else 0.0)
-    return Replanned(sequence, price, extra)
+def _no_answer(result: PlanningResult, layer: int, reason: str) -> Replanned:
+    return Replanned(None, np.inf, np.full(len(result.candidates.nodes), np.inf), layer, reason)
+
+
+def _beyond(result: PlanningResult, pins: Rows[Pin], regions: Rows[Region]) -> str:
+    """The first wish that is about no waypoint of the path, in a sentence; '' without one."""
+    count = len(result.problem.toolpath)
+    for pin in pins:
+        if not 0 <= pin.waypoint < count:
+            return (
+                f"the pin of waypoint {pin.waypoint + 1} lies beyond the path, which has {count} "
+                "waypoints; take it away"
+            )
+    for region in regions:
+        if region.first >= count or region.last < 0:
+            return (
+                f"the forbidden region of waypoints {region.first + 1} to {region.last + 1} lies "
+                f"beyond the path, which has {count} waypoints; take it away"
+            )
+    return ""
 
 
 def _empty_reason(result: PlanningResult, layer: int, pins: Rows[Pin]) -> str:
@@ -123,14 +166,34 @@ def _empty_reason(result: PlanningResult, layer: int, pins: Rows[Pin]) -> str:
     number = layer + 1
     if not own.any():
         return f"waypoint {number} has no feasible pose at all"
-    if any(pin.waypoint == layer for pin in pins):
-        return (
-            f"the pinned place of waypoint {number} is not feasible, or comes nearer than the "
-            "required clearance; pin another lean"
-        )
+    for pin in pins:
+        if pin.waypoint == layer:
+            return f"{_pin_reason(result, pin)}; pin another lean"
     return f"every feasible pose of waypoint {number} is forbidden; make the region smaller"
 
 
-def _cut_layer(graph: LayeredGraph) -> int:
-    cut = diagnose_cut(graph)
-    return int(cut.gaps[0].gap) if cut is not None else 0
+def _pin_reason(result: PlanningResult, pin: Pin) -> str:
+    """Why no sequence may pass a pinned place."""
+    candidates, number = result.candidates, pin.waypoint + 1
+    passing = allowed_nodes(result, [pin], [])
+    passing &= candidates.nodes.candidate[:, 0] == pin.waypoint
+    if passing.any():
+        return f"the pinned pose of waypoint {number} lies in a forbidden region"
+    near = np.abs(candidates.orientations[:, 0] - pin.lean) <= ANGLE_SLACK
+    if not near.any():
+        lean = pin.lean * DEG_PER_RAD
+        return f"the pinned lean of waypoint {number}, {lean:.2f} deg, is none of the map's"
+    slots = [
+        slot for slot, branch in enumerate(candidates.branches) if pin.branch in (None, branch)
+    ]
+    outcome = candidates.outcome[pin.waypoint][near][:, slots]
+    free = outcome == Outcome.FEASIBLE
+    if not free.any():
+        # The filters are asked in their order: the largest got furthest.
+        furthest = Outcome(int(outcome.max(initial=int(Outcome.UNREACHABLE))))
+        return f"the pinned pose of waypoint {number} is rejected: {furthest.label}"
+    clearance = candidates.clearance[pin.waypoint][near][:, slots][free].max()
+    return (
+        f"the pinned pose of waypoint {number} comes to {down_mm(clearance):.1f} mm, "
+        f"nearer than the {result.hard_minimum * MM_PER_M:.1f} mm that are kept"
+    )

@@ -6,10 +6,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from solver.candidates.outcomes import Outcome
 from solver.catalog import load_cell
 from solver.model.settings import Scheme
 from solver.model.wishes import Pin, Region
-from solver.pipeline.planning import layered_graph, plan
+from solver.pipeline.planning import layered_graph, plan, rounded_clearance
 from solver.pipeline.replanning import allowed_nodes, replan
 from solver.search.exact import exact
 from solver.units import DEG
@@ -121,3 +122,101 @@ def test_one_branch_along_each_pass_costs_what_the_free_optimum_costs_when_it_ke
     allowed = result.candidates.nodes.clearance >= result.hard_minimum
     graph, _ = bound.subgraph(allowed)
     assert exact(graph).cost == pytest.approx(result.sequence.cost, abs=1e-12)
+
+
+@pytest.fixture(scope="module")
+def groove():
+    return plan(load_cell("groove_hw300"))
+
+
+def branches_at(result, waypoint, lean):
+    """Branches that are feasible and far enough away at a waypoint and a lean."""
+    candidates = result.candidates
+    at, _, slot, _ = candidates.nodes.candidate.T
+    fits = (at == waypoint) & (np.abs(candidates.lean - lean) < 1e-9)
+    fits &= candidates.nodes.clearance >= result.hard_minimum
+    return set(candidates.branches[slot[fits]].tolist())
+
+
+def test_a_pin_of_another_branch_does_not_change_the_branch_within_a_pass(groove):
+    """The arm turned over between two waypoints, the tool 2.3 m away, and nothing was said."""
+    own = int(groove.sequence.branch[20])
+    others = branches_at(groove, 20, 14.0 * DEG) - {own}
+    assert others
+    for branch in others:
+        answer = replan(groove, [Pin(20, 14.0 * DEG, branch)])
+        if answer.sequence is None:
+            assert "within a pass" in answer.reason
+            assert f"waypoints {answer.layer} and {answer.layer + 1}," in answer.reason
+            assert np.isinf(answer.price)
+        else:
+            assert set(answer.sequence.branch.tolist()) == {branch}
+
+
+def test_pins_of_two_branches_in_one_pass_are_refused_with_the_waypoints(groove):
+    leans = {0: 14.0 * DEG, 49: 9.0 * DEG}
+    one, *others = branches_at(groove, 0, leans[0])
+    other = next(iter(branches_at(groove, 49, leans[49]) - {one}), None)
+    assert other is not None, others
+    answer = replan(groove, [Pin(0, leans[0], one), Pin(49, leans[49], other)])
+    assert answer.sequence is None
+    assert "within a pass" in answer.reason
+
+
+@pytest.mark.parametrize("waypoint", [50, 999])
+def test_a_pin_beyond_the_end_of_the_path_is_not_passed_over(groove, waypoint):
+    answer = replan(groove, [Pin(waypoint, 14.0 * DEG)])
+    assert answer.sequence is None
+    assert f"waypoint {waypoint + 1} lies beyond the path, which has 50" in answer.reason
+
+
+def test_a_region_beyond_the_end_of_the_path_is_not_passed_over(groove):
+    answer = replan(groove, regions=[Region(60, 70, -1.0, 1.0)])
+    assert answer.sequence is None
+    assert "waypoints 61 to 71 lies beyond the path" in answer.reason
+    assert replan(groove, regions=[Region(49, 70, 0.3, 0.4)]).sequence is not None
+
+
+def test_a_pin_that_comes_too_near_says_how_near(groove):
+    candidates = groove.candidates
+    near = (candidates.nodes.clearance < groove.hard_minimum) & (candidates.nodes.clearance > 0.02)
+    node = int(np.flatnonzero(near)[0])
+    waypoint, lean = int(candidates.nodes.candidate[node, 0]), float(candidates.lean[node])
+    at = (candidates.nodes.candidate[:, 0] == waypoint) & (candidates.lean == lean)
+    best = float(candidates.nodes.clearance[at].max())
+    reason = replan(groove, [Pin(waypoint, lean)]).reason
+    stated = float(reason.split(" comes to ")[1].split(" mm")[0])
+    assert stated == pytest.approx(best * 1000.0 - 0.05, abs=0.0501)
+    assert "50.0 mm that are kept" in reason
+
+
+def test_a_rejected_pin_names_its_filter_and_one_off_the_steps_its_lean(groove):
+    outcome = groove.candidates.outcome[10].max(axis=1)
+    dead = next(o for o in range(len(outcome)) if not (groove.candidates.outcome[10, o] == 0).any())
+    lean = float(groove.candidates.orientations[dead, 0])
+    label = Outcome(int(groove.candidates.outcome[10, dead].max())).label
+    assert replan(groove, [Pin(10, lean)]).reason.endswith(
+        f"is rejected: {label}; pin another lean"
+    )
+    assert "0.50 deg, is none" in replan(groove, [Pin(10, 0.5 * DEG)]).reason
+
+
+def test_a_pin_inside_a_forbidden_region_says_so(groove):
+    answer = replan(groove, [Pin(10, 14.0 * DEG)], [Region(10, 10, 0.0, 20.0 * DEG)])
+    assert answer.layer == 10
+    assert "waypoint 11 lies in a forbidden region" in answer.reason
+
+
+def test_the_joints_that_are_written_keep_the_clearance_under_pins_too(groove):
+    """Rounded to the program's decimals a node on the edge falls under the safety distance."""
+    nodes = groove.candidates.nodes
+    order = np.argsort(np.abs(nodes.clearance - groove.hard_minimum))
+    edge = [n for n in order if nodes.clearance[n] >= groove.hard_minimum][:40]
+    for node in edge:
+        waypoint, _, slot, turn = nodes.candidate[node]
+        lean = float(groove.candidates.lean[node])
+        pin = Pin(int(waypoint), lean, int(groove.candidates.branches[slot]), int(turn))
+        answer = replan(groove, [pin])
+        if answer.sequence is not None:
+            rounded = rounded_clearance(groove.candidates, answer.sequence.nodes)
+            assert rounded.min() >= groove.hard_minimum
