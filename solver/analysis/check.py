@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from solver.transforms import FloatArray
 from solver.units import MM_PER_M
+
+if TYPE_CHECKING:
+    from solver.transforms import FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +32,7 @@ class Check:
         """The check as a line for people."""
         word = "ok    " if self.passed else "FAILED"
         limit = f"{self.limit:.4g}, assumed" if self.assumed else f"{self.limit:.4g}"
-        value = "not known" if np.isnan(self.value) else f"{self.value:.4g} {self.unit}"
+        value = "not known" if math.isnan(self.value) else f"{self.value:.4g} {self.unit}"
         text = f"{word} {self.name}: {value} (limit {limit})"
         return f"{text}, {self.detail}" if self.detail else text
 
@@ -42,12 +44,14 @@ def unfinished(name: str, unit: str, why: str) -> Check:
 
 def down_mm(clearance: float) -> float:
     """A clearance [m] in mm, rounded down to 0.1 mm: people never read more than was checked."""
-    if not np.isfinite(clearance):
+    if not math.isfinite(clearance):
         return clearance
-    return float(np.floor(clearance * MM_PER_M * 10.0) / 10.0)
+    return math.floor(clearance * MM_PER_M * 10.0) / 10.0
 
 
 def worst(values: FloatArray) -> tuple[float, int]:
     """Largest value and its index; a value that is not a number is the worst."""
+    import numpy as np  # noqa: PLC0415 - the window shows checks before it needs numpy
+
     index = int(np.argmax(np.where(np.isnan(values), np.inf, values)))
     return float(values[index]), index

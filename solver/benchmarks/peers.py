@@ -42,7 +42,9 @@ class SearchTiming:
 
 @dataclass(frozen=True, slots=True)
 class GraphTiming:
-    """One graph: its size, the wall time of its candidates [s], and the searches.
+    """One graph: its size, wall times [s] of its candidates and of the exact search, searches.
+
+    The exact search is that of every node, whose two directions can run at the same time.
 
     `peak_bytes` is the growth of resident memory while the candidates were generated.
     """
@@ -54,6 +56,8 @@ class GraphTiming:
     threads: int
     one_thread: float | None
     all_threads: float | None
+    exact_one_thread: float | None
+    exact_two_threads: float | None
     peak_bytes: int
     searches: tuple[SearchTiming, ...]
 
@@ -74,29 +78,38 @@ def measure_peers(
     bounds: Bounds,
     *,
     small: bool = False,
+    cell: str = CELL,
     tell: Callable[[str], None] = lambda _: None,
 ) -> PeerTables:
     """Measure all tables; `tell` is given a line when a part begins.
 
-    `small` takes few poses and pairs, to see that everything runs.
+    `small` takes few poses and pairs, to see that everything runs. `cell` is a shipped cell or
+    a cell's file.
+
+    Raises
+    ------
+    InputError
+        If the cell cannot be read.
     """
-    problem = load_cell(CELL)
-    graphs = tuple(time_graph(size, bounds, tell) for size in sizes)
+    problem = load_cell(cell)
+    graphs = tuple(time_graph(size, bounds, tell, cell) for size in sizes)
     tell("inverse kinematics")
     kinematics = time_kinematics(problem, bounds.repeats, small=small)
     tell("distances")
     distances = time_distances(problem, bounds.repeats, small=small)
-    return PeerTables(CELL, bounds, graphs, tuple(kinematics), tuple(distances))
+    return PeerTables(problem.name, bounds, graphs, tuple(kinematics), tuple(distances))
 
 
-def time_graph(size: GraphSize, bounds: Bounds, tell: Callable[[str], None]) -> GraphTiming:
+def time_graph(
+    size: GraphSize, bounds: Bounds, tell: Callable[[str], None], cell: str = CELL
+) -> GraphTiming:
     """Generate one graph and search it by every means, each in a process of its own."""
     with tempfile.TemporaryDirectory(prefix="posopt-") as folder:
         file = Path(folder) / "graph.npz"
         tell(f"graph {size}: candidates")
         job = {
             "job": "candidates",
-            "cell": CELL,
+            "cell": cell,
             "size": [size.waypoints, size.leans, size.leads, size.branches],
             "graph": str(file),
         }
@@ -109,13 +122,15 @@ def time_graph(size: GraphSize, bounds: Bounds, tell: Callable[[str], None]) -> 
         facts, *runs = answer.lines
         searches = tuple(_compared(list(_searches(file, size, bounds, tell))))
     return GraphTiming(
-        size=size,
+        size=replace(size, waypoints=facts["waypoints"]),
         nodes=facts["nodes"],
         edges=facts["edges"],
         widest_layer=facts["widest_layer"],
         threads=facts["threads"],
         one_thread=median_of(runs, "one_thread"),
         all_threads=median_of(runs, "all_threads"),
+        exact_one_thread=median_of(runs, "exact_one_thread"),
+        exact_two_threads=median_of(runs, "exact_two_threads"),
         peak_bytes=facts["peak_bytes"],
         searches=searches,
     )

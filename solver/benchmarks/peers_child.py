@@ -28,6 +28,7 @@ from solver.benchmarks.peers_graphs import (
 from solver.benchmarks.peers_search import searcher
 from solver.candidates.generate import generate, usable_cores
 from solver.catalog import load_cell
+from solver.search.exact import exact
 
 OUT_OF_MEMORY = 3
 """Exit code where the bound on memory was met."""
@@ -45,9 +46,9 @@ def main(text: str) -> int:
 
 
 def measure_candidates(job: Mapping[str, Any]) -> None:
-    """Generate the candidates of a graph on one thread and on all cores, and write the graph."""
+    """Generate and search a graph on one thread and on several, and write the graph."""
     cell = load_cell(job["cell"])
-    generate(sized_problem(cell, SMALL_SIZES[0]))
+    exact(thinned(joint_cost_graph(generate(sized_problem(cell, SMALL_SIZES[0])))))
     problem = sized_problem(cell, GraphSize(*job["size"]))
     before = start_memory()
     candidates = generate(problem)
@@ -56,6 +57,7 @@ def measure_candidates(job: Mapping[str, Any]) -> None:
     save_graph(graph, Path(job["graph"]))
     sizes = graph.layer_sizes
     say(
+        waypoints=graph.layer_count,
         nodes=graph.node_count,
         edges=graph.edge_count,
         widest_layer=int(sizes.max()),
@@ -67,7 +69,12 @@ def measure_candidates(job: Mapping[str, Any]) -> None:
     for _ in range(job["repeats"]):
         alone = wall_time(partial(generate, problem, threads=1))
         together = wall_time(partial(generate, problem, threads=usable_cores()))
-        say(one_thread=alone, all_threads=together)
+        say(
+            one_thread=alone,
+            all_threads=together,
+            exact_one_thread=wall_time(partial(exact, graph, threads=1)),
+            exact_two_threads=wall_time(partial(exact, graph, threads=2)),
+        )
 
 
 def measure_search(job: Mapping[str, Any]) -> None:

@@ -17,7 +17,7 @@ from solver.search.graph import LayeredGraph
 from solver.units import DEG
 
 CELL = "groove_hw300"
-"""The cell whose path is resampled."""
+"""The cell whose path is resampled, where no other is asked for."""
 
 LEAD_REACH = 10.0 * DEG
 """A lead sweep runs from minus to plus this angle [rad]."""
@@ -87,7 +87,8 @@ def sized_problem(problem: PlanningProblem, size: GraphSize) -> PlanningProblem:
     """The problem with its path resampled and its angles and branches as many as asked.
 
     Lean keeps the range of the cell's own sweep; lead runs over +-10 deg; branches are the
-    first ones in their order.
+    first ones in their order. A path of several passes keeps their ends, so that it may have
+    some waypoints more or fewer.
     """
     lean = problem.settings.lean
     settings = replace(
@@ -96,13 +97,7 @@ def sized_problem(problem: PlanningProblem, size: GraphSize) -> PlanningProblem:
         lead=_sweep(-LEAD_REACH, LEAD_REACH, size.leads),
         branches=tuple(range(size.branches)),
     )
-    sized = replace(lengthened(problem, size.waypoints), settings=settings)
-    if len(sized.toolpath) != size.waypoints:
-        raise InputError(
-            f"the path of {problem.name} has {len(sized.toolpath)} waypoints where "
-            f"{size.waypoints} were asked for: its corners are kept"
-        )
-    return sized
+    return replace(lengthened(problem, size.waypoints), settings=settings)
 
 
 def _sweep(lower: float, upper: float, count: int) -> Sweep:

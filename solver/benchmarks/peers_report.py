@@ -65,6 +65,12 @@ def _graph_lines(cell: str, graph: GraphTiming) -> Iterator[str]:
             f"{graph.one_thread / graph.all_threads:.2f} times as fast), "
             f"{_memory(graph.peak_bytes)}"
         )
+    if graph.exact_one_thread is not None and graph.exact_two_threads is not None:
+        yield (
+            f"exact search of every node in {_time(graph.exact_one_thread)} on one thread, "
+            f"{_time(graph.exact_two_threads)} on two (wall time, "
+            f"{graph.exact_one_thread / graph.exact_two_threads:.2f} times as fast)"
+        )
     yield ""
     heads = ("search", "runs", "build", "search alone", "ratio", "memory", "cost", "cost - exact")
     yield from _table(heads, [_search_row(one) for one in graph.searches])

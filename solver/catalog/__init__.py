@@ -1,19 +1,48 @@
-"""The catalogue: robots, tools, beams and cells as data, shipped or in files of the user."""
+"""The catalogue: robots, tools, beams and cells as data, shipped or in files of the user.
 
-from solver.catalog.beams import BeamEntry, beam_entries, load_beam
-from solver.catalog.cells import load_cell
-from solver.catalog.listing import CatalogEntry, describe, list_names
-from solver.catalog.robots import load_robot
-from solver.catalog.tools import load_tool
+Loaded when it is first used: who only asks where the data lie needs no numpy.
+"""
 
-__all__ = [
-    "BeamEntry",
-    "CatalogEntry",
-    "beam_entries",
-    "describe",
-    "list_names",
-    "load_beam",
-    "load_cell",
-    "load_robot",
-    "load_tool",
-]
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from solver.catalog.beams import BeamEntry as BeamEntry
+    from solver.catalog.beams import beam_entries as beam_entries
+    from solver.catalog.beams import load_beam as load_beam
+    from solver.catalog.cells import load_cell as load_cell
+    from solver.catalog.listing import CatalogEntry as CatalogEntry
+    from solver.catalog.listing import describe as describe
+    from solver.catalog.listing import list_names as list_names
+    from solver.catalog.robots import load_robot as load_robot
+    from solver.catalog.tools import load_tool as load_tool
+
+_HOME: Final = {
+    "BeamEntry": "beams",
+    "CatalogEntry": "listing",
+    "beam_entries": "beams",
+    "describe": "listing",
+    "list_names": "listing",
+    "load_beam": "beams",
+    "load_cell": "cells",
+    "load_robot": "robots",
+    "load_tool": "tools",
+}
+
+__all__ = sorted(_HOME)  # noqa: PLE0605 - a list of strings, kept in one place
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name from its home the first time it is asked for."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'solver.catalog' has no attribute {name!r}")
+    value = getattr(import_module(f"solver.catalog.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """Names for completion."""
+    return sorted([*globals(), *_HOME])

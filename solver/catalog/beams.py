@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from solver.catalog.names import is_path, normalised, shipped_files, unknown_name
+from solver.catalog.names import entry_source, is_path, normalised, shipped_files, unknown_name
 from solver.catalog.robots import read_sources
 from solver.catalog.toml_reader import Table, read_toml
 from solver.errors import InputError, Place
@@ -21,8 +22,15 @@ class BeamEntry:
     later_root: float | None = None
 
 
-def load_beam(name: str | Path, *, relative_to: Path | None = None) -> BeamSection:
+def load_beam(
+    name: str | Path,
+    *,
+    relative_to: Path | None = None,
+    files: Mapping[str, bytes] | None = None,
+) -> BeamSection:
     """Load a section by name ('HW300', 'hea 200'), or the only one of a TOML file.
+
+    `files` holds TOML files in memory by the references under which they are asked for.
 
     Raises
     ------
@@ -32,8 +40,8 @@ def load_beam(name: str | Path, *, relative_to: Path | None = None) -> BeamSecti
         If the file is unusable or holds more than one section.
     """
     if isinstance(name, Path) or is_path(name):
-        path = Path(name) if relative_to is None else relative_to / name
-        entries = read_series(path)
+        path, data = entry_source("beams", name, relative_to, files)
+        entries = read_series(path, data)
         if len(entries) != 1:
             raise InputError(
                 f"expected one section, found {len(entries)}", Place(str(path), key="sections")
@@ -51,9 +59,9 @@ def beam_entries() -> tuple[BeamEntry, ...]:
     return tuple(entry for path in shipped_files("beams") for entry in read_series(path))
 
 
-def read_series(path: Path) -> tuple[BeamEntry, ...]:
-    """All sections of a series file."""
-    document = read_toml(path)
+def read_series(path: Path, data: bytes | None = None) -> tuple[BeamEntry, ...]:
+    """All sections of a series file; `data` are its bytes where they are in memory already."""
+    document = read_toml(path, data)
     head = document.table("series")
     series, standard = head.text("title"), head.text("standard")
     entries = tuple(_entry(one, series, standard) for one in document.tables("sections"))

@@ -13,6 +13,8 @@ What stands still may be a triangle mesh instead: `mesh`, a file beside the TOML
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Final, Literal
 
 import numpy as np
@@ -43,8 +45,12 @@ def read_body(table: Table, inflation: float = 0.0) -> Body:
         return Body(name, *_round_bar(table, shape, inflation), group)
 
 
-def read_mesh_body(table: Table, pose: FloatArray) -> Body:
+def read_mesh_body(
+    table: Table, pose: FloatArray, files: Mapping[str, bytes] | None = None
+) -> Body:
     """Read a body whose shape is a mesh file; `pose` (4, 4) is its owner_from_body.
+
+    `files` holds mesh files in memory by the names that the table gives them.
 
     Raises
     ------
@@ -57,7 +63,10 @@ def read_mesh_body(table: Table, pose: FloatArray) -> Body:
     group = table.name("group") if table.has("group") else name
     unit: Literal["mm", "m"] = "mm" if table.choice("unit", ("mm", "m"), "mm") == "mm" else "m"
     with table.located("mesh"):
-        return Body(name, load_mesh(table.folder / table.text("mesh"), unit), pose, group)
+        file = table.text("mesh")
+        data = (files or {}).get(file)
+        path = table.folder / file if data is None else Path(file)
+        return Body(name, load_mesh(path, unit, data), pose, group)
 
 
 def read_rotation(table: Table, key: str = "wpr_deg") -> FloatArray:

@@ -6,6 +6,7 @@ of its lowest edge instead of that of its centre.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
@@ -25,9 +26,14 @@ PLACEMENT_FRAMES: Final = (Frame.FLOOR.value, Frame.FANUC_WORLD.value)
 
 
 def read_workpiece(
-    document: Table, beam: str | Path | BeamSection | None, robot: Robot
+    document: Table,
+    beam: str | Path | BeamSection | None,
+    robot: Robot,
+    files: Mapping[str, bytes] | None = None,
 ) -> Workpiece:
     """Read the workpiece of a cell; `beam` is another section in place of that of the cell.
+
+    `files` holds mesh and TOML files in memory by the names that the cell gives them.
 
     Raises
     ------
@@ -37,7 +43,7 @@ def read_workpiece(
     """
     if not document.has("workpiece"):
         document.get("beam", "a table [beam] or a table [workpiece]")
-        return _beam(document.table("beam"), beam, robot)
+        return _beam(document.table("beam"), beam, robot, files)
     if document.has("beam"):
         raise document.error("workpiece", "expected no second workpiece beside 'beam'")
     table = document.table("workpiece")
@@ -45,22 +51,27 @@ def read_workpiece(
         raise table.error(
             None, "the workpiece is a mesh, which no beam can replace; leave the other beam out"
         )
-    return _mesh_workpiece(table, robot)
+    return _mesh_workpiece(table, robot, files)
 
 
-def _mesh_workpiece(table: Table, robot: Robot) -> Workpiece:
+def _mesh_workpiece(table: Table, robot: Robot, files: Mapping[str, bytes] | None) -> Workpiece:
     """Read one watertight mesh as a workpiece; the axes of the file are its frame."""
     rotation = read_rotation(table)
     position = np.array(table.numbers("position_mm", 3)) + _frame_origin(table, robot)
-    body = read_mesh_body(table, np.eye(4))
+    body = read_mesh_body(table, np.eye(4), files)
     for key, value in (("name", body.name), ("group", body.group)):
         if value == FLOOR_GROUP:
             raise table.error(key, "the name 'floor' is kept for the floor of the cell")
     return Workpiece(body.name, (body,), rigid(rotation, position))
 
 
-def _beam(table: Table, beam: str | Path | BeamSection | None, robot: Robot) -> Workpiece:
-    own = _section(table)
+def _beam(
+    table: Table,
+    beam: str | Path | BeamSection | None,
+    robot: Robot,
+    files: Mapping[str, bytes] | None,
+) -> Workpiece:
+    own = _section(table, files)
     section = own
     if isinstance(beam, BeamSection):
         section = beam
@@ -81,14 +92,14 @@ def _frame_origin(table: Table, robot: Robot) -> FloatArray:
     return np.array([0.0, 0.0, robot.world_height if frame == Frame.FANUC_WORLD.value else 0.0])
 
 
-def _section(table: Table) -> BeamSection:
+def _section(table: Table, files: Mapping[str, bytes] | None) -> BeamSection:
     """Find the section by name, or by its dimensions; a root radius may replace that of a name."""
     if any(table.has(key) for key in DIMENSIONS):
         name = table.name("section") if table.has("section") else "custom"
         return read_dimensions(table, name, "stated by the cell")
     name = table.text("section")
     with table.located("section"):
-        section = load_beam(name, relative_to=table.folder)
+        section = load_beam(name, relative_to=table.folder, files=files)
     if not table.has("root_mm"):
         return section
     with table.located("root_mm"):

@@ -75,8 +75,8 @@ def read_cell(
 ) -> PlanningProblem:
     """Read a cell from a whole document; see `load_cell`.
 
-    `files` holds path files in memory: a path whose `file` is one of these names is read from
-    there.
+    `files` holds files in memory by the names under which the cell refers to them: its path,
+    meshes, and TOML files of robot, tool and section are read from there before the disk.
 
     Raises
     ------
@@ -87,12 +87,12 @@ def read_cell(
     name, title = head.name("name"), head.text("title")
     robot_table = document.table("robot")
     with robot_table.located("model"):
-        robot = load_robot(robot_table.text("model"), relative_to=document.folder)
+        robot = load_robot(robot_table.text("model"), relative_to=document.folder, files=files)
     tool_table = document.table("tool")
     with tool_table.located("model"):
-        tool = load_tool(tool_table.text("model"), relative_to=document.folder)
-    workpiece = read_workpiece(document, beam, robot)
-    fixtures = _fixtures(document, head)
+        tool = load_tool(tool_table.text("model"), relative_to=document.folder, files=files)
+    workpiece = read_workpiece(document, beam, robot, files)
+    fixtures = _fixtures(document, head, files)
     owner = PathOwner(workpiece, robot, tool, files or {})
     toolpath = read_path(document.table("path"), owner, None if path is None else Path(path))
     bodies = _body_set(robot_table, robot)
@@ -160,9 +160,9 @@ def _window(table: Table, key: str) -> tuple[float, float]:
     return low, high
 
 
-def _fixtures(document: Table, head: Table) -> tuple[Body, ...]:
+def _fixtures(document: Table, head: Table, files: Mapping[str, bytes] | None) -> tuple[Body, ...]:
     """Bodies in the floor frame; the floor itself is one of them where the cell says so."""
-    bodies = [_fixture(one) for one in document.tables("fixtures", ())]
+    bodies = [_fixture(one, files) for one in document.tables("fixtures", ())]
     for index, body in enumerate(bodies):
         if FLOOR_GROUP in (body.name, body.group):
             raise document.error(
@@ -178,8 +178,8 @@ def _fixtures(document: Table, head: Table) -> tuple[Body, ...]:
     return tuple(bodies)
 
 
-def _fixture(table: Table) -> Body:
+def _fixture(table: Table, files: Mapping[str, bytes] | None) -> Body:
     if not table.has("mesh"):
         return read_body(table)
     position = table.numbers("position_mm", 3, (0.0, 0.0, 0.0))
-    return read_mesh_body(table, rigid(read_rotation(table), position))
+    return read_mesh_body(table, rigid(read_rotation(table), position), files)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import importlib.resources
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
@@ -77,3 +78,27 @@ def file_of(kind: str, name_or_path: str | Path, relative_to: Path | None = None
         if normalised(stem) == normalised(name):
             return path
     raise unknown_name(kind, name, tuple(files))
+
+
+def entry_source(
+    kind: str,
+    name_or_path: str | Path,
+    relative_to: Path | None = None,
+    files: Mapping[str, bytes] | None = None,
+) -> tuple[Path, bytes | None]:
+    """Find an entry as `file_of`, or in `files`, which holds files in memory by their references.
+
+    Returns
+    -------
+    Path, bytes or None
+        The file, and its bytes where they are in memory; the path then only names it.
+
+    Raises
+    ------
+    UnknownNameError
+        As `file_of`.
+    """
+    name = str(name_or_path)
+    if files is not None and is_path(name) and name in files:
+        return Path(name), files[name]
+    return file_of(kind, name_or_path, relative_to), None

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
 from solver.catalog.bodies import read_body, read_rotation
-from solver.catalog.names import file_of
+from solver.catalog.names import entry_source
 from solver.catalog.toml_reader import Table, read_toml
 from solver.model.robot import JOINTS, LinkBody, Robot
 from solver.transforms import FloatArray, rigid
@@ -19,8 +20,15 @@ ACCELERATION_TIME = 0.3
 """Time in which a joint whose acceleration is not stated reaches its full speed [s]."""
 
 
-def load_robot(name_or_path: str | Path, *, relative_to: Path | None = None) -> Robot:
+def load_robot(
+    name_or_path: str | Path,
+    *,
+    relative_to: Path | None = None,
+    files: Mapping[str, bytes] | None = None,
+) -> Robot:
     """Load a shipped robot by name, or one of a TOML file.
+
+    `files` holds TOML files in memory by the references under which they are asked for.
 
     Raises
     ------
@@ -29,7 +37,7 @@ def load_robot(name_or_path: str | Path, *, relative_to: Path | None = None) -> 
     InputError
         If the file is unusable or contradicts itself; the sentence names file and key.
     """
-    document = read_toml(file_of("robots", name_or_path, relative_to))
+    document = read_toml(*entry_source("robots", name_or_path, relative_to, files))
     head = document.table("robot")
     name, title = head.name("name"), head.text("title")
     payload = head.number("payload_kg", low=0.0)

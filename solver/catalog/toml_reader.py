@@ -37,8 +37,10 @@ _DOT: Final = re.compile(r"[^\s.][ \t]*\.")
 _SYNTAX_PLACE: Final = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)\s*$")
 
 
-def read_toml(path: Path) -> Table:
+def read_toml(path: Path, data: bytes | None = None) -> Table:
     """Read a TOML file; the returned table is the whole document.
+
+    `data` are its bytes where they are in memory already; `path` then only names it.
 
     Raises
     ------
@@ -46,7 +48,7 @@ def read_toml(path: Path) -> Table:
         If the file cannot be opened, is over 5 MB, is not UTF-8 or is not TOML; syntax errors
         carry line and column.
     """
-    text = _read_text(path)
+    text = _text(_read(path) if data is None else data, path)
     file = str(path)
     _refuse_long_keys(text, file)
     try:
@@ -62,19 +64,26 @@ def read_toml(path: Path) -> Table:
     return Table(values, file)
 
 
-def _read_text(path: Path) -> str:
-    """Read the text of a file without its byte-order mark, with refusals as sentences."""
+def _read(path: Path) -> bytes:
+    """Read the bytes of a small file, with refusals as sentences."""
     place = Place(str(path))
     try:
         if path.is_dir():
             raise InputError("this is a folder; expected a TOML file", place)
+        if path.exists() and not path.is_file():
+            raise InputError("this is no regular file; expected a TOML file", place)
         with path.open("rb") as stream:
-            data = stream.read(MAXIMUM_BYTES + 1)
+            return stream.read(MAXIMUM_BYTES + 1)
     except FileNotFoundError:
         raise InputError("the file does not exist", place) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "its name is not usable"
         raise InputError(f"the file cannot be read: {reason}", place) from None
+
+
+def _text(data: bytes, path: Path) -> str:
+    """Decode the bytes of a file without its byte-order mark, with refusals as sentences."""
+    place = Place(str(path))
     if len(data) > MAXIMUM_BYTES:
         raise InputError("the file is larger than 5 MB; expected a small TOML file", place)
     if b"\0" in data:
@@ -138,17 +147,20 @@ class Table:
     refuses every key that nobody asked for, in this table and all those below it.
     """
 
-    def __init__(self, values: Mapping[str, Any], file: str, key: str = "") -> None:
+    def __init__(
+        self, values: Mapping[str, Any], file: str, key: str = "", folder: Path | None = None
+    ) -> None:
         self.file = file
         self.key = key
+        self._folder = folder
         self._values = values
         self._asked: dict[str, None] = {}
         self._children: list[Table] = []
 
     @property
     def folder(self) -> Path:
-        """The folder of the file, from which relative references start."""
-        return Path(self.file).parent
+        """The folder from which relative references start: the stated one, or the file's."""
+        return Path(self.file).parent if self._folder is None else self._folder
 
     def place(self, key: str | None = None) -> Place:
         """Locate a key of this table, or of the table itself."""
@@ -318,7 +330,7 @@ class Table:
     def _child(self, key: str, value: object) -> Table:
         if not isinstance(value, dict):
             raise self.error(key, f"expected a table, found {shown(value)}")
-        child = Table(value, self.file, self._path(key))
+        child = Table(value, self.file, self._path(key), self._folder)
         self._children.append(child)
         return child
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
 from solver.catalog.bodies import read_body, read_rotation
-from solver.catalog.names import file_of
+from solver.catalog.names import entry_source
 from solver.catalog.robots import read_sources
 from solver.catalog.toml_reader import Table, read_toml
 from solver.model.shapes import ToolRole
@@ -23,8 +24,15 @@ MAX_DEPTH: Final = 20.0 * MM
 """Deepest that a contact body may enter what its pass touches [m]; no tool removes more."""
 
 
-def load_tool(name_or_path: str | Path, *, relative_to: Path | None = None) -> Tool:
+def load_tool(
+    name_or_path: str | Path,
+    *,
+    relative_to: Path | None = None,
+    files: Mapping[str, bytes] | None = None,
+) -> Tool:
     """Load a shipped tool by name, or one of a TOML file.
+
+    `files` holds TOML files in memory by the references under which they are asked for.
 
     Raises
     ------
@@ -33,7 +41,7 @@ def load_tool(name_or_path: str | Path, *, relative_to: Path | None = None) -> T
     InputError
         If the file is unusable or contradicts itself; the sentence names file and key.
     """
-    document = read_toml(file_of("tools", name_or_path, relative_to))
+    document = read_toml(*entry_source("tools", name_or_path, relative_to, files))
     head = document.table("tool")
     name, title = head.name("name"), head.text("title")
     mass = head.number("mass_kg", low=0.0)

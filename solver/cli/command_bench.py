@@ -43,6 +43,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "(default 50x51x1 50x51x8 500x51x8 5000x51x8 200x51x21x8)",
     )
     parser.add_argument(
+        "--cell",
+        metavar="CELL",
+        help="with --peers: a shipped cell, or a cell's TOML file (default groove_hw300)",
+    )
+    parser.add_argument(
         "--time-limit",
         default="120",
         metavar="S",
@@ -62,8 +67,8 @@ def run(options: argparse.Namespace) -> int:
         raise InputError(f"--repeats lies in 1..1000, got {options.repeats}")
     if options.peers:
         return _run_peers(options)
-    if options.small or options.sizes:
-        raise InputError("--small and --sizes belong to --peers")
+    if options.small or options.sizes or options.cell is not None:
+        raise InputError("--small, --sizes and --cell belong to --peers")
     return _run_plans(options)
 
 
@@ -74,7 +79,7 @@ def _run_peers(options: argparse.Namespace) -> int:
     if options.long:
         raise InputError("--long and --peers do not go together; use --sizes")
     from solver.benchmarks.peers import measure_peers
-    from solver.benchmarks.peers_graphs import SMALL_SIZES, STANDARD_SIZES, parse_size
+    from solver.benchmarks.peers_graphs import CELL, SMALL_SIZES, STANDARD_SIZES, parse_size
     from solver.benchmarks.peers_process import GIGABYTE, Bounds
     from solver.benchmarks.peers_report import peers_document, peers_lines
 
@@ -89,6 +94,7 @@ def _run_peers(options: argparse.Namespace) -> int:
         asked or standard,
         bounds,
         small=options.small,
+        cell=CELL if options.cell is None else options.cell,
         tell=lambda text: print(text, file=sys.stderr),
     )
     if options.as_json:

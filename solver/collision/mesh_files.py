@@ -7,13 +7,15 @@ on is text or bytes without names, materials and outside references.
 
 from __future__ import annotations
 
+import base64
+import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from solver.collision.mesh_gltf import checked_gltf, folder_file
+from solver.collision.mesh_gltf import checked_gltf, folder_file, refers_to_files
 from solver.collision.mesh_topology import MAX_TRIANGLES
 from solver.errors import InputError, Place
 
@@ -55,20 +57,27 @@ def read_bytes(path: Path, place: Place) -> bytes:
         data = path.read_bytes()
     except (OSError, ValueError) as error:
         raise InputError(f"the file cannot be read ({error})", place) from error
+    return _checked_bytes(data, place)
+
+
+def _checked_bytes(data: bytes, place: Place) -> bytes:
     if not data.strip():
         raise InputError("the file is empty", place)
     return data
 
 
-def checked_file(path: Path) -> CheckedFile:
-    """Read a mesh file and check it against the rules of its format (by extension)."""
+def checked_file(path: Path, data: bytes | None = None) -> CheckedFile:
+    """Read a mesh file and check it against the rules of its format (by extension).
+
+    `data` are its bytes where they are in memory already; `path` then only names it.
+    """
     place = Place(str(path))
     kind = path.suffix.lower()
     if kind not in FORMATS:
         raise InputError(
             f"unknown mesh format {path.suffix!r}, expected one of {', '.join(FORMATS)}", place
         )
-    data = read_bytes(path, place)
+    data = read_bytes(path, place) if data is None else _checked_bytes(data, place)
     if kind == ".stl":
         return _checked_stl(data, place)
     if kind == ".obj":
@@ -77,6 +86,33 @@ def checked_file(path: Path) -> CheckedFile:
         return _checked_ply(data, place)
     text, parts = checked_gltf(data, kind == ".glb", path, place)
     return CheckedFile("gltf", text, None, parts)
+
+
+def whole_file(path: Path) -> tuple[str, bytes]:
+    """Read a mesh file as one that refers to no others: its name and its bytes.
+
+    A glTF whose buffers are files of their own becomes one with all of them inside, reduced to
+    its triangles; every other file stays as it is.
+
+    Raises
+    ------
+    InputError
+        Missing, empty, too large, of unknown format, or a glTF whose buffers cannot be read.
+    """
+    place, kind = Place(str(path)), path.suffix.lower()
+    if kind not in FORMATS:
+        raise InputError(
+            f"unknown mesh format {path.suffix!r}, expected one of {', '.join(FORMATS)}", place
+        )
+    data = read_bytes(path, place)
+    if kind not in {".gltf", ".glb"} or not refers_to_files(data, kind == ".glb", path):
+        return path.name, data
+    text, parts = checked_gltf(data, kind == ".glb", path, place)
+    document = json.loads(text)
+    for buffer in document["buffers"]:
+        content = base64.b64encode(parts[buffer["uri"]]).decode("ascii")
+        buffer["uri"] = f"data:application/octet-stream;base64,{content}"
+    return f"{path.stem}.gltf", json.dumps(document).encode()
 
 
 def _checked_stl(data: bytes, place: Place) -> CheckedFile:

@@ -72,6 +72,16 @@ def checked_gltf(
         ) from error
 
 
+def refers_to_files(data: bytes, binary: bool, path: Path) -> bool:
+    """Whether a glTF file keeps buffers in files of their own; False where it is no glTF."""
+    try:
+        text, _ = _glb_chunks(data, Place(str(path))) if binary else (data, None)
+        buffers = json.loads(text.decode("utf-8-sig"))["buffers"]
+        return any("uri" in one and not EMBEDDED.match(one["uri"]) for one in buffers)
+    except (InputError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        return False
+
+
 def _refuse_constant(name: str) -> float:
     raise ValueError(f"{name} is no JSON number")
 

@@ -23,7 +23,7 @@ Unit = Literal["mm", "m"]
 UNITS: Final[Mapping[str, float]] = {"mm": MM, "m": 1.0}
 
 
-def load_mesh(path: str | Path, unit: Unit = "mm") -> Mesh:
+def load_mesh(path: str | Path, unit: Unit = "mm", data: bytes | None = None) -> Mesh:
     """Load a watertight mesh; several bodies in one file become one mesh.
 
     Parameters
@@ -32,6 +32,8 @@ def load_mesh(path: str | Path, unit: Unit = "mm") -> Mesh:
         An STL (ASCII or binary), OBJ, PLY, glTF or GLB file.
     unit : 'mm' or 'm'
         Unit of the file's coordinates. glTF means metres, but many programs write millimetres.
+    data : bytes, optional
+        The file's content, where it is in memory already.
 
     Returns
     -------
@@ -49,7 +51,7 @@ def load_mesh(path: str | Path, unit: Unit = "mm") -> Mesh:
     place = Place(str(path))
     if unit not in UNITS:
         raise InputError(f"unknown unit {unit!r} of the mesh, expected 'mm' or 'm'", place)
-    vertices, faces = _triangles(checked_file(path), place)
+    vertices, faces = _triangles(checked_file(path, data), place)
     mesh, _ = closed_mesh(vertices * UNITS[unit], faces, place)
     return mesh
 

@@ -9,6 +9,7 @@ from enum import Enum
 import numpy as np
 
 from solver.errors import ModelError
+from solver.model.scheme import Scheme as Scheme  # noqa: PLC0414 - a setting
 from solver.transforms import FloatArray, frozen
 from solver.units import DEG, DEG_PER_RAD, MM
 
@@ -65,15 +66,6 @@ class EdgeCost(Enum):
 
     SQUARED = "squared"
     """Sum of range-normalised squared changes."""
-
-
-class Scheme(Enum):
-    """A way of searching the graph."""
-
-    EXACT = "exact"
-    F = "f"
-    F1 = "f1"
-    F2 = "f2"
 
 
 @dataclass(frozen=True, slots=True)

@@ -68,10 +68,10 @@ def _draw(study: Study) -> Any:
     def draw(figure: Any) -> None:
         axes = figure.add_subplot()
         axes.step(points[:, 0] * MM_PER_M, points[:, 1], where="pre", color="0.6", lw=1.0)
-        axes.plot(points[:, 0] * MM_PER_M, points[:, 1], ".", color="tab:blue", label="exact")
+        axes.plot(points[:, 0] * MM_PER_M, points[:, 1], ".", label="exact")
         if at is not None:
             knee_at = (points[at, 0] * MM_PER_M, points[at, 1])
-            axes.plot(*knee_at, "o", mfc="none", ms=11, color="tab:red", label="knee")
+            axes.plot(*knee_at, "o", mfc="none", ms=11, color="#D55E00", label="knee")
         for (name, one), shape in zip(marks, "^sv", strict=True):
             axes.plot(
                 one.least_clearance * MM_PER_M, one.joint_cost, shape, ms=6, mfc="none",
@@ -80,7 +80,7 @@ def _draw(study: Study) -> Any:
         refined = study.refined.sequence
         axes.plot(
             refined.least_clearance * MM_PER_M, refined.joint_cost, "*", ms=10,
-            color="tab:green", label="refined grid",
+            color="#009E73", label="refined grid",
         )  # fmt: skip
         axes.set_xlabel("least clearance [mm]")
         axes.set_ylabel("joint cost")

@@ -16,8 +16,8 @@ from solver.study.sections import Drawing, Section
 from solver.transforms import FloatArray, IntArray
 from solver.units import DEG_PER_RAD, MM_PER_M
 
-COLOURS = ("#4c9f70", "#d0d0d0", "#8c6bb1", "#f0b400", "#d7301f", "#fc8d59", "#8c2d04")
-"""One for each outcome, in its order."""
+COLOURS = ("#B4CBE0", "#999999", "#E69F00", "#CC79A7", "#D55E00", "#882255", "#0072B2")
+"""One for each outcome, in its order, told apart by the colour-blind too (Okabe and Ito)."""
 
 
 def graph_figures(study: Study) -> Section:
@@ -101,8 +101,12 @@ def _filtered(study: Study, slot: int, layer: IntArray) -> Any:
         )  # fmt: skip
         finite = clearance[np.isfinite(clearance)]
         if len(finite) and finite.min() < safe < finite.max() and min(clearance.shape) > 1:
-            axes.contour(number, lean, clearance.T, levels=[safe], colors="white", linewidths=1.0)
-        for scheme, style in ((Scheme.F, "k--"), (Scheme.F2, "r-")):
+            border = axes.contour(
+                number, lean, clearance.T, levels=[safe], colors="white", linewidths=1.0
+            )
+            axes.clabel(border, fmt=lambda value: f"{value:g} mm", fontsize="small")
+        # Where both are the same, the dashes of f let f2 be seen.
+        for scheme, style in ((Scheme.F2, "r-"), (Scheme.F, "k--")):
             _line(axes, study.sequence(scheme), style, scheme.value)
         figure.colorbar(image, label="clearance [mm]")
         _label(axes)
@@ -120,14 +124,16 @@ def _search(study: Study, regions: dict[str, tuple[IntArray, Sequence]]) -> Any:
         both = figure.subplots(1, 2, sharex=True, sharey=True)
         for axes, (name, (order, sequence)) in zip(both, regions.items(), strict=True):
             axes.plot(waypoint, lean, ".", ms=1.5, color="0.85", rasterized=True)
-            axes.scatter(
-                waypoint[order], lean[order], c=np.arange(len(order)), s=5, cmap="plasma",
-                rasterized=True,
+            image = axes.scatter(
+                waypoint[order], lean[order], c=np.linspace(0.0, 1.0, len(order)), s=5,
+                vmin=0.0, vmax=1.0, cmap="plasma", rasterized=True,
             )  # fmt: skip
             _line(axes, sequence, "k-", name)
             axes.set_title(f"{name}: {len(order):,} expanded", fontsize="medium")
             _label(axes)
         both[1].set_ylabel("")
+        bar = figure.colorbar(image, ax=both, label="order of expansion", ticks=[0.0, 1.0])
+        bar.ax.set_yticklabels(["first", "last"])
 
     return draw
 

@@ -76,8 +76,7 @@ def _clearance(study: Study, shown: Mapping[str, Sequence]) -> Any:
         for (name, one), style in zip(shown.items(), STYLES, strict=False):
             number = np.arange(1, len(one.clearance) + 1)
             axes.plot(number, one.clearance * MM_PER_M, style, lw=1.4, label=name)
-        axes.axhline(safe, color="0.4", lw=0.8)
-        axes.annotate("safety distance", (1, safe), va="bottom", fontsize="small", color="0.3")
+        axes.axhline(safe, color="0.4", lw=0.8, zorder=1, label="safety distance")
         axes.set_xlabel("waypoint")
         axes.set_ylabel("clearance [mm]")
         axes.legend(fontsize="small")

@@ -11,14 +11,16 @@ from solver.study.report import StudyReport
 from solver.study.sections import Section, StudyTable, shown
 
 STYLE = """
-body { font: 15px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem;
+body { font: 15px/1.5 system-ui, sans-serif; max-width: 78rem; margin: 2rem auto; padding: 0 1rem;
   color: #1c1f24; background: #fff; }
 h1, h2, h3 { line-height: 1.2; } h2 { margin-top: 2.4rem; border-bottom: 1px solid #ccd; }
-table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
+h1, p, ul { max-width: 52rem; }
+table { border-collapse: collapse; font-size: .8rem; font-variant-numeric: tabular-nums; }
 .wide { overflow-x: auto; margin: .6rem 0 1rem; }
 caption { text-align: left; font-weight: 600; padding: .3rem 0; }
-th, td { padding: .18rem .55rem; text-align: right; border-bottom: 1px solid #e4e6ea; }
-th:first-child, td:first-child, td.text { text-align: left; }
+th, td { padding: .18rem .45rem; text-align: right; border-bottom: 1px solid #e4e6ea; }
+th { vertical-align: bottom; }
+th:first-child, td:first-child, .text { text-align: left; } td.text { white-space: nowrap; }
 .note, .time { color: #5b6470; } .absent { background: #fff6e0; padding: .4rem .8rem; }
 figure { margin: 1rem 0; } figure img { max-width: 100%; height: auto; }
 figcaption { color: #5b6470; font-size: .85rem; } nav a { margin-right: 1rem; }
@@ -60,13 +62,14 @@ def _section(section: Section, figures: Mapping[str, Figure]) -> str:
 
 def _table(table: StudyTable) -> str:
     head = "".join(
-        f"<th{_class(column.timing)}>{escape(column.head)}</th>" for column in table.columns
+        f"<th{_class(column.timing, _is_text(table, at))}>{escape(column.head)}</th>"
+        for at, column in enumerate(table.columns)
     )
     rows = []
     for row in table.rows:
         cells = []
         for value, column in zip(row, table.columns, strict=True):
-            kind = ' class="text"' if isinstance(value, str) else _class(column.timing)
+            kind = _class(column.timing, isinstance(value, str))
             cells.append(f"<td{kind}>{escape(shown(value, column))}</td>")
         rows.append(f"<tr>{''.join(cells)}</tr>")
     note = f"<p class='note'>{escape(table.note)}</p>" if table.note else ""
@@ -78,7 +81,14 @@ def _table(table: StudyTable) -> str:
     )
 
 
-def _class(timing: bool) -> str:
+def _is_text(table: StudyTable, at: int) -> bool:
+    """Whether a column holds words, which begin at its left as its head does."""
+    return any(isinstance(row[at], str) for row in table.rows)
+
+
+def _class(timing: bool, text: bool) -> str:
+    if text:
+        return ' class="text"'
     return ' class="time"' if timing else ""
 
 

@@ -17,6 +17,8 @@ STYLE: Any = {
     "font.family": "sans-serif",
     "axes.spines.top": False,
     "axes.spines.right": False,
+    # Okabe and Ito, without the yellow that white paper swallows.
+    "axes.prop_cycle": "cycler('color', ['0072B2', 'D55E00', '009E73', 'CC79A7', '56B4E9'])",
 }
 DOTS_PER_INCH = 120
 

@@ -11,8 +11,10 @@ import jsonschema
 import pytest
 
 from solver.benchmarks import peers, peers_child, peers_distance, peers_kinematics
+from solver.benchmarks.peers_graphs import GraphSize, sized_problem
 from solver.benchmarks.peers_process import Answer, Outcome
 from solver.benchmarks.peers_search import SEARCHERS, installed
+from solver.catalog import load_cell
 from solver.cli.main import main
 
 SCHEMA = Path(__file__).parents[2] / "docs" / "schemas" / "bench.schema.json"
@@ -76,6 +78,28 @@ def test_the_printed_tables_show_every_search_and_what_could_not_finish(
             assert head.count("|") == row.count("|")
 
 
+def test_any_other_cell_is_measured_the_same_way(in_this_process, monkeypatch, capsys):
+    monkeypatch.setattr(peers, "time_distances", _few_distances)
+    monkeypatch.setattr(peers, "time_kinematics", _few_poses)
+    arguments = ["--cell", "groove_paper", "--sizes", "3x11x1", "--repeats", "1"]
+    assert main(["bench", "--peers", *arguments]) == 0
+    text = capsys.readouterr().out
+    assert "groove_paper, 3 x 11 x 1: 33 candidates" in text
+    assert "groove_hw300" not in text
+    assert "exact search of every node in" in text
+
+
+def test_a_path_of_several_passes_says_how_many_waypoints_it_has(
+    in_this_process, monkeypatch, capsys
+):
+    monkeypatch.setattr(peers, "time_distances", _few_distances)
+    monkeypatch.setattr(peers, "time_kinematics", _few_poses)
+    arguments = ["--cell", "zigzag_hw250", "--sizes", "14x3x1", "--repeats", "1"]
+    assert main(["bench", "--peers", *arguments]) == 0
+    sized = sized_problem(load_cell("zigzag_hw250"), GraphSize(14, 3, 1, 1))
+    assert f"zigzag_hw250, {len(sized.toolpath)} x 3 x 1: " in capsys.readouterr().out
+
+
 def _few_poses(problem, repeats, *, small):
     return peers_kinematics.time_kinematics(problem, repeats, small=not small)
 
@@ -108,6 +132,8 @@ def test_runs_that_finished_count_though_a_later_one_met_a_bound():
     [
         ["--small"],
         ["--sizes", "50x51x8"],
+        ["--cell", "groove_paper"],
+        ["--peers", "--cell", "no_such_cell"],
         ["--peers", "--sizes", "50"],
         ["--peers", "--long"],
         ["--peers", "--time-limit", "0"],

@@ -1,29 +1,51 @@
 """Toolpaths from files and from the faces of a beam.
 
 An importer is one file with a function ``(Source, ImportOptions) -> Toolpath`` and one line in
-:mod:`solver.io.importers.registry`.
+:mod:`solver.io.importers.registry`. Each is loaded when it is first used.
 """
 
-from solver.io.importers.options import ImportOptions
-from solver.io.importers.parametric import (
-    FaceLine,
-    ParametricPath,
-    face_line_toolpath,
-    parametric_toolpath,
-)
-from solver.io.importers.registry import import_source, load_toolpath, path_source
-from solver.io.importers.resampling import resample
-from solver.io.importers.source import Source
+from __future__ import annotations
 
-__all__ = [
-    "FaceLine",
-    "ImportOptions",
-    "ParametricPath",
-    "Source",
-    "face_line_toolpath",
-    "import_source",
-    "load_toolpath",
-    "parametric_toolpath",
-    "path_source",
-    "resample",
-]
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from solver.io.importers.options import ImportOptions as ImportOptions
+    from solver.io.importers.parametric import FaceLine as FaceLine
+    from solver.io.importers.parametric import ParametricPath as ParametricPath
+    from solver.io.importers.parametric import face_line_toolpath as face_line_toolpath
+    from solver.io.importers.parametric import parametric_toolpath as parametric_toolpath
+    from solver.io.importers.registry import import_source as import_source
+    from solver.io.importers.registry import load_toolpath as load_toolpath
+    from solver.io.importers.registry import path_source as path_source
+    from solver.io.importers.resampling import resample as resample
+    from solver.io.importers.source import Source as Source
+
+_HOME: Final = {
+    "FaceLine": "parametric",
+    "ImportOptions": "options",
+    "ParametricPath": "parametric",
+    "Source": "source",
+    "face_line_toolpath": "parametric",
+    "import_source": "registry",
+    "load_toolpath": "registry",
+    "parametric_toolpath": "parametric",
+    "path_source": "registry",
+    "resample": "resampling",
+}
+
+__all__ = sorted(_HOME)  # noqa: PLE0605 - a list of strings, kept in one place
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name from its home the first time it is asked for."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'solver.io.importers' has no attribute {name!r}")
+    value = getattr(import_module(f"solver.io.importers.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """Names for completion."""
+    return sorted([*globals(), *_HOME])

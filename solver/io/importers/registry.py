@@ -1,32 +1,45 @@
-"""The importers by file extension; a new one is a file and a line here."""
+"""The importers by file extension; a new one is a file and a line here.
+
+Each is loaded when its first file is read, so that asking for an extension costs nothing.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from solver.errors import InputError, Place
-from solver.io.importers.csv_path import import_csv
-from solver.io.importers.json_path import import_json
-from solver.io.importers.ls_path import import_ls
 from solver.io.importers.naming import listed, shown
-from solver.io.importers.options import ImportOptions
-from solver.io.importers.resampling import resample
 from solver.io.importers.source import Source, read_source
-from solver.model.toolpath import Toolpath
 
-Importer = Callable[[Source, ImportOptions], Toolpath]
+if TYPE_CHECKING:
+    from solver.io.importers.options import ImportOptions
+    from solver.model.toolpath import Toolpath
+
+Importer = Callable[[Source, "ImportOptions"], "Toolpath"]
 """Reads the bytes of a file; every refusal is an InputError."""
+
+
+def _importer_in(module: str, function: str) -> Importer:
+    """An importer that loads its module when it is first called."""
+
+    def run(source: Source, options: ImportOptions) -> Toolpath:
+        importer: Importer = getattr(import_module(f"solver.io.importers.{module}"), function)
+        return importer(source, options)
+
+    return run
+
 
 IMPORTERS: Final[Mapping[str, Importer]] = MappingProxyType(
     {
-        ".csv": import_csv,
-        ".txt": import_csv,
-        ".tsv": import_csv,
-        ".json": import_json,
-        ".ls": import_ls,
+        ".csv": _importer_in("csv_path", "import_csv"),
+        ".txt": _importer_in("csv_path", "import_csv"),
+        ".tsv": _importer_in("csv_path", "import_csv"),
+        ".json": _importer_in("json_path", "import_json"),
+        ".ls": _importer_in("ls_path", "import_ls"),
     }
 )
 """Extension in lower case -> importer."""
@@ -63,6 +76,9 @@ def path_source(path: str | Path) -> Source:
 
 def import_source(source: Source, options: ImportOptions | None = None) -> Toolpath:
     """Read a path from bytes in memory; the extension of `source.file` names the format."""
+    from solver.io.importers.options import ImportOptions  # noqa: PLC0415 - loads numpy
+    from solver.io.importers.resampling import resample  # noqa: PLC0415
+
     chosen = options or ImportOptions()
     importer = _importer(source.file)
     toolpath = importer(source, chosen)
