@@ -30,7 +30,7 @@ MENUS: Final = ("File", "Edit", "Plan", "View", "Help")
 
 ACTIONS: Final[tuple[ActionSpec, ...]] = (
     ActionSpec("new", "File", "New", "Begin with the default cell", "Ctrl+N"),
-    ActionSpec("open", "File", "Open…", "Open a project or a cell", "Ctrl+O"),
+    ActionSpec("open", "File", "Open…", "Open a project, a cell or a path", "Ctrl+O"),
     ActionSpec("save", "File", "Save", "Save the project", "Ctrl+S"),
     ActionSpec("save_as", "File", "Save as…", "Save under another name", "Ctrl+Shift+S"),
     ActionSpec("export", "File", "Export…", "Check and export the program", "Ctrl+E"),

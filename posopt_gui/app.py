@@ -29,7 +29,10 @@ def parser() -> argparse.ArgumentParser:
     """The arguments of the command."""
     made = argparse.ArgumentParser("posopt-gui", description="the window of posopt")
     made.add_argument(
-        "file", nargs="?", metavar="CELL|PROJECT", help="a cell by name or file, or a project"
+        "file",
+        nargs="?",
+        metavar="CELL|PROJECT|PATH",
+        help="a cell by name or file, a project, or a path file",
     )
     made.add_argument("--language", choices=["en", "zh_CN"], help="language of the window")
     made.add_argument("--theme", choices=["light", "dark"], help="colours of the window")

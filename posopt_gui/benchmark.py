@@ -114,6 +114,8 @@ class Measuring:
 
     def start(self) -> None:
         """Open the window as the application does."""
+        from posopt_gui.start import begin  # noqa: PLC0415 - its time belongs to the start
+
         window, session = self.window, self.session
         paints = _Paints(window)
         results: list[int] = []
@@ -123,10 +125,10 @@ class Measuring:
         self._since_start("start: frame of the window shown")
         self.gaps.start()
         window.ready.connect(lambda: self._since_start("start: panels built"))
-        QTimer.singleShot(0, window.load_views)
-        QTimer.singleShot(0, session.start)
+        QTimer.singleShot(0, lambda: begin(window))
         _live_until(lambda: results)
         self._since_start("start: first plan")
+        _live_until(lambda: "start: panels built" in self.found)
         painted = _Paints(window.map.canvas.viewport())
         window.map.canvas.viewport().update()
         _live_until(lambda: painted.count)

@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QSettings, QSize, Qt, QTimer, Signal
+from PySide6.QtCore import QSettings, QSize, Qt, QThreadPool, QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import (
     QApplication,
-    QComboBox,
     QLabel,
     QMainWindow,
     QTabWidget,
@@ -19,20 +18,33 @@ from PySide6.QtWidgets import (
 )
 
 from posopt_gui.actions import Actions
-from posopt_gui.controllers.session import Message, Session
+from posopt_gui.controllers.session import CLOSING_TIME, Message, Session
 from posopt_gui.dialogs.file_questions import FileQuestions
+from posopt_gui.panels import building_steps, load_modules
 from posopt_gui.style import apply_theme
 from posopt_gui.views.one_flush import OneFlush
 from posopt_gui.views.places import Places
+from posopt_gui.views.quiet_editors import QuietCombo
 from posopt_gui.views.shell_parts import RecentMenu
 from posopt_gui.views.status_line import StatusLine
-from solver.model.settings import Scheme
+from posopt_gui.workers.jobs import JobLine, end_all
+from solver.model.scheme import Scheme
 
 if TYPE_CHECKING:
     from posopt_gui.controllers.files import Files
     from posopt_gui.controllers.recovery import Recovery
     from posopt_gui.dialogs.export_dialog import ExportDialog
+    from posopt_gui.dialogs.setup_dialogs import SetupDialogs
+    from posopt_gui.views.curves_view import CurvesView
+    from posopt_gui.views.front_view import FrontView
     from posopt_gui.views.guide_window import GuideWindow
+    from posopt_gui.views.hints import Hints
+    from posopt_gui.views.inspector_view import InspectorView
+    from posopt_gui.views.map_view import MapView
+    from posopt_gui.views.results_view import ResultsView
+    from posopt_gui.views.scene_view import SceneView
+    from posopt_gui.views.setup_view import SetupView
+    from posopt_gui.views.timeline_view import TimelineView
 
 TITLE = "posopt"
 SCHEMES = (Scheme.EXACT, Scheme.F, Scheme.F1, Scheme.F2)
@@ -42,6 +54,18 @@ class MainWindow(QMainWindow):
     """Shell first; the panels, plots and the 3D view follow once it is on screen."""
 
     ready = Signal()
+
+    # Built once the frame is on screen, see posopt_gui.panels.
+    setup: SetupView
+    setup_dialogs: SetupDialogs
+    inspector: InspectorView
+    timeline: TimelineView
+    scene: SceneView
+    map: MapView
+    curves: CurvesView
+    results: ResultsView
+    front: FrontView
+    hints: Hints
 
     def __init__(
         self, session: Session, files: Files, recovery: Recovery, settings: QSettings
@@ -65,6 +89,13 @@ class MainWindow(QMainWindow):
         self._make_tool_bar()
         self._make_status_bar()
         self.places = Places(self, settings)
+        self.tabs = QTabWidget()
+        self.tabs.setDocumentMode(True)
+        self.tabs.tabBar().setDrawBase(False)
+        self.all_ended = True
+        self._pool = QThreadPool(self)
+        self._loads = JobLine(self._pool, self)
+        self._loads.done.connect(self._build_in_turns)
         self._connect()
         self.retranslate()
         self.retheme()
@@ -83,7 +114,7 @@ class MainWindow(QMainWindow):
         button = bar.widgetForAction(table["plan"])
         if isinstance(button, QToolButton):
             button.setObjectName("primary")
-        self._scheme_words, self.scheme = QLabel(), QComboBox()
+        self._scheme_words, self.scheme = QLabel(), QuietCombo()
         self._scheme_words.setBuddy(self.scheme)
         for scheme in SCHEMES:
             self.scheme.addItem(scheme.value, scheme)
@@ -93,6 +124,8 @@ class MainWindow(QMainWindow):
         bar.addAction(table["live"])
         bar.addSeparator()
         bar.addAction(table["export"])
+        for tool in bar.findChildren(QToolButton):
+            tool.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.addToolBar(bar)
         self._bar = bar
 
@@ -105,39 +138,42 @@ class MainWindow(QMainWindow):
             bar.addPermanentWidget(widget)
 
     def load_views(self) -> None:
-        """Build the panels; plots and OpenGL are loaded here, not before the window shows."""
-        from posopt_gui.dialogs.setup_dialogs import SetupDialogs  # noqa: PLC0415
-        from posopt_gui.views.curves_view import CurvesView  # noqa: PLC0415
-        from posopt_gui.views.hint_spots import make_hints  # noqa: PLC0415
-        from posopt_gui.views.inspector_view import InspectorView  # noqa: PLC0415
-        from posopt_gui.views.map_view import MapView  # noqa: PLC0415
-        from posopt_gui.views.results_view import ResultsView  # noqa: PLC0415
-        from posopt_gui.views.scene_view import SceneView  # noqa: PLC0415
-        from posopt_gui.views.setup_view import SetupView  # noqa: PLC0415
-        from posopt_gui.views.timeline_view import TimelineView  # noqa: PLC0415
+        """Build all panels at once."""
+        for step in building_steps(self):
+            step()
 
-        self.setup = SetupView(self.session)
-        self.setup_dialogs = SetupDialogs(self.session, self.setup)
-        self.inspector = InspectorView(self.session)
-        self.timeline = TimelineView(self.session)
-        self.scene = SceneView(self.session)
-        self.map = MapView(self.session)
-        self.curves = CurvesView(self.session)
-        self.results = ResultsView(self.session, self.curves.comparison)
-        self.tabs = QTabWidget()
-        self.tabs.setDocumentMode(True)
-        self.tabs.tabBar().setDrawBase(False)
-        self.tabs.addTab(self.curves, "")
-        self.tabs.addTab(self.results, "")
-        panels = {"Setup": self.setup, "Inspector": self.inspector, "Playback": self.timeline}
-        self.places.fill(panels, (self.scene, self.map, self.tabs))
+    def load_views_in_turns(self) -> None:
+        """Build the panels while the window lives; `ready` says when all are there.
+
+        Plots and OpenGL are loaded on a thread of their own, after the window shows.
+        """
+        self._loads.submit(lambda _: load_modules())
+
+    def _build_in_turns(self) -> None:
+        """Ask for one panel after the other: what is asked for meanwhile comes between them."""
+        turns, steps = self.session.turns, building_steps(self)
+
+        def go_on() -> None:
+            step = next(steps, None)
+            if step is not None:
+                step()
+                turns.ask("panel", go_on)
+
+        turns.ask("panel", go_on)
+
+    def panels_built(self) -> None:
+        """Connect the panels with each other and with the shell."""
+        from posopt_gui.views.hint_spots import make_hints  # noqa: PLC0415 - loads the plots
+
+        self.places.settle()
         self._views = [
             self.setup, self.inspector, self.timeline, self.scene, self.map, self.curves,
-            self.results,
+            self.results, self.front,
         ]  # fmt: skip
         self._link_axes()
         self._fill_menus()
         self.inspector.key_wanted.connect(self._show_field)
+        self.files.path_refused.connect(lambda path, _: self.setup.load_path(str(path)))
         self.retranslate()
         button = self._bar.widgetForAction(self.actions_table["export"])
         self.hints = make_hints(self, self.session, self._settings, self.setup, self.map, button)
@@ -214,8 +250,10 @@ class MainWindow(QMainWindow):
         self.actions_table.retranslate()
         self.places.retranslate(self._tr)
         if self._views:
+            self.tabs.tabBar().setAccessibleName(self._tr("Curves and results"))
             self.tabs.setTabText(0, self._tr("Curves"))
             self.tabs.setTabText(1, self._tr("Results"))
+            self.tabs.setTabText(2, self._tr("Front"))
         self.scheme.setToolTip(self._tr("How the graph is searched; exact is proven optimal"))
         self.scheme.setAccessibleName(self._tr("Scheme"))
         self._scheme_words.setText(self._tr("Scheme"))
@@ -303,15 +341,23 @@ class MainWindow(QMainWindow):
         if not self.files.may_close():
             event.ignore()
             return
-        self.places.save()
+        if self._views:
+            self.places.save()
         for dialog in self._dialogs.values():
             dialog.shut_down()
             dialog.close()
         self.recovery.end()
-        if self._views:
-            self.map.extras.close()
+        self.session.turns.clear()
+        # A window may be closed before all of its panels are built.
+        if hasattr(self, "setup"):
             self.setup.path.loader.close()
+            self.setup.fixtures.loader.close()
+        if hasattr(self, "map"):
+            self.map.extras.close()
+        if hasattr(self, "front"):
+            self.front.front.close()
         self.session.close()
+        self.all_ended = end_all(self, self.session, patience=CLOSING_TIME)
         self.files.ended()
         event.accept()
 

@@ -198,6 +198,22 @@ def _results(tab: int) -> Show:
     return show
 
 
+def _front(stage: Stage) -> QWidget:
+    window = stage.window
+    window.places.share_height((3, 7, 14))
+    window.tabs.setCurrentWidget(window.front)
+    front = window.front.front
+    stage.wait(lambda: front.model is not None and not front.stale, "the front")
+    stage.run_for(0.2)
+    window.front.plot.pointed.emit(2 * len(front.model or ()) // 3)
+    return window.front
+
+
+def _no_front(stage: Stage) -> None:
+    stage.window.front.plot.pointed.emit(-1)
+    _curves_again(stage)
+
+
 def _all_schemes(stage: Stage) -> None:
     stage.session.set_compared((Scheme.EXACT, Scheme.F, Scheme.F1, Scheme.F2))
     stage.replan()
@@ -360,6 +376,8 @@ SCENES: Final[tuple[Scene, ...]] = (
     Scene("results_schemes", "schemes side by side", _results(1), _curves_again,
           begin=_all_schemes, end=_two_schemes),
     Scene("results_messages", "messages", _results(2), _curves_again),
+    Scene("front", "clearance against joint motion, a point under the mouse", _front, _no_front,
+          begin=_all_schemes, end=_two_schemes),
     Scene("inspector", "a pose with its filters", _inspector),
     Scene("setup_beam", "the beam and its drawing", _setup("beam"), _setup_again),
     Scene("setup_place", "placement and fixtures", _setup("placement", "fixtures"), _setup_again),

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import sys
+from pathlib import Path
 
 from PySide6.QtCore import QCoreApplication, QSettings, Qt, QTimer
 from PySide6.QtWidgets import QApplication
 
 from posopt_gui.controllers.defects import DefectHook
 from posopt_gui.controllers.files import Files, state_of_argument
+from posopt_gui.controllers.path_import import is_path_file
 from posopt_gui.controllers.recovery import Recovery
 from posopt_gui.controllers.session import Session
 from posopt_gui.document.document import Document
@@ -16,6 +19,9 @@ from posopt_gui.look import Look
 from posopt_gui.main_window import MainWindow
 from posopt_gui.style import prepare_fonts
 from solver.errors import PosoptError
+
+SWITCH = 0.001
+"""How long another thread may keep the interpreter that the window waits for [s]."""
 
 
 def application() -> QApplication:
@@ -26,6 +32,8 @@ def application() -> QApplication:
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     QCoreApplication.setOrganizationName("posopt")
     QCoreApplication.setApplicationName("posopt")
+    # Each call from Qt into Python waits for the threads that plan to pass on the interpreter.
+    sys.setswitchinterval(SWITCH)
     created = QApplication(["posopt"])
     prepare_fonts()
     return created
@@ -50,12 +58,29 @@ def make_window(
     return MainWindow(session, files, Recovery(session, files), settings)
 
 
-def begin(window: MainWindow) -> None:
-    """Fill the window that is on screen, bring back what a run before left, and plan."""
-    window.load_views()
-    # Only now can what is recovered be told.
-    window.recovery.restore(only=window.files.path)
+def begin(window: MainWindow, file: str | None = None) -> None:
+    """Plan and fill the window that is on screen, and bring back what a run before left.
+
+    Who names a `file` gets that file: of what was left behind only the work of the same project
+    comes back, and other work stays for a start without a file.
+    """
+
+    def restore() -> None:
+        # Only now can what is recovered be told; it is planned instead.
+        path = window.files.path
+        wanted = (file is None or path is not None) and not window.files.modified
+        if wanted and window.recovery.restore(only=path):
+            window.session.start()
+        elif file is not None or window.files.modified:
+            window.recovery.tell_kept()
+        if file is not None and is_path_file(file):
+            once = Qt.ConnectionType.SingleShotConnection
+            window.files.path_taken.connect(window.session.plan, once)
+            window.files.import_path(Path(file).absolute())
+
+    window.ready.connect(restore)
     window.session.start()
+    window.load_views_in_turns()
 
 
 def run(file: str | None, language: str | None, theme: str | None, *, smoke: bool = False) -> int:
@@ -73,7 +98,12 @@ def run(file: str | None, language: str | None, theme: str | None, *, smoke: boo
     hook = DefectHook(window.session)
     hook.install()
     window.show()
-    QTimer.singleShot(0, window.close if smoke else lambda: begin(window))
+    QTimer.singleShot(0, window.close if smoke else lambda: begin(window, file))
     code = int(running.exec())
     hook.remove()
+    if not window.all_ended:
+        # Everything is saved, and a thread that runs on would not survive the interpreter's end.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
     return code

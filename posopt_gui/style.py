@@ -165,7 +165,7 @@ def _tables(theme: Theme) -> str:
     """Tables, lists and scroll bars."""
     return f"""
 QTableView, QTreeView, QListView {{ background: {theme.surface}; border: 1px solid {theme.border};
-    gridline-color: {theme.grid}; alternate-background-color: {theme.window};
+    gridline-color: {theme.grid}; alternate-background-color: {theme.window}; outline: 0;
     selection-background-color: {theme.selection}; selection-color: {theme.text}; }}
 QHeaderView::section {{ background: {theme.raised}; color: {theme.muted}; border: none;
     border-right: 1px solid {theme.border}; padding: 4px 6px; font-weight: bold; }}
@@ -180,6 +180,7 @@ QScrollBar:horizontal {{ background: {theme.window}; height: 11px; margin: 0; }}
 QScrollBar::handle:horizontal {{ background: {theme.border}; min-width: 24px;
     border-radius: 5px; }}
 QScrollBar::handle:hover {{ background: {theme.muted}; }}
+QAbstractScrollArea::corner {{ background: {theme.window}; border: none; }}
 QScrollBar::add-line, QScrollBar::sub-line {{ width: 0; height: 0; }}
 QScrollBar::add-page, QScrollBar::sub-page {{ background: transparent; }}
 """

@@ -63,7 +63,7 @@ def test_a_file_that_cannot_be_opened_is_one_sentence_and_exit_code_two(offscree
 def test_what_the_command_takes_is_told_without_a_display():
     done = run_window({}, "--help")
     assert done.returncode == 0
-    for word in ("CELL|PROJECT", "--language", "--theme"):
+    for word in ("CELL|PROJECT|PATH", "--language", "--theme"):
         assert word in done.stdout
 
 

@@ -111,7 +111,7 @@ def test_every_package_is_listed_for_the_wheel():
         for path in FILES
         if path.name == "__init__.py" and path.parent.name != "resources"
     }
-    assert listed == present | {"posopt_resources"}
+    assert listed == present | {"posopt_resources", "posopt_docs"}
 
 
 def test_only_kernels_are_loosely_typed():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -43,7 +44,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     source.mkdir()
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(REPOSITORY / name, source)
-    for name in ("solver", "posopt_gui", "resources"):
+    for name in ("solver", "posopt_gui", "resources", "docs"):
         skip = shutil.ignore_patterns(*NOT_PACKED)
         shutil.copytree(REPOSITORY / name, source / name, ignore=skip)
     options = ("--no-deps", "--no-build-isolation", "--disable-pip-version-check")
@@ -85,6 +86,7 @@ def test_wheel_holds_every_module_and_every_resource(wheel):
         ("solver", "solver"),
         ("posopt_gui", "posopt_gui"),
         ("resources", "posopt_resources"),
+        ("docs", "posopt_docs"),
     ):
         for path in (REPOSITORY / folder).rglob("*"):
             if path.is_file() and not NOT_PACKED.intersection(path.parts):
@@ -100,6 +102,18 @@ def test_installed_wheel_is_what_runs(posopt, tmp_path):
     for line in done.stdout.splitlines():
         assert "elsewhere" in Path(line).as_posix()
         assert not Path(line).is_relative_to(REPOSITORY)
+
+
+def test_installed_wheel_brings_the_guide_with_its_pictures(posopt, tmp_path):
+    program = "from posopt_gui.controllers.guide import guide_file; print(guide_file())"
+    done = posopt("-c", program, cwd=tmp_path, program="python")
+    assert done.returncode == 0, done.stderr
+    guide = Path(done.stdout.strip())
+    assert "elsewhere" in guide.as_posix()
+    for page in (guide, guide.with_name("window_zh_CN.md")):
+        targets = re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text("utf-8"))
+        assert any(target.endswith(".png") for target in targets)
+        assert [one for one in targets if not (page.parent / one).is_file()] == []
 
 
 def test_installed_wheel_lists_its_cells(posopt, tmp_path):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, QStandardPaths, QThreadPool, QTimer, Signal
 
 from posopt_gui.controllers.session import CLOSING_TIME, Message, Session
+from posopt_gui.viewmodels.error_words import error_words
 from posopt_gui.viewmodels.export_model import (
     ExportForm,
     ExportStage,
@@ -22,8 +23,6 @@ from posopt_gui.workers.jobs import JobLine
 from solver.errors import PosoptError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from solver.analysis.result import PlanningResult
     from solver.pipeline.programming import ProgramDraft, WrittenProgram
     from solver.progress import Monitor
@@ -56,9 +55,9 @@ class Exporter(QObject):
         self._stamped = ""
         self._pool = QThreadPool(self)
         self._pool.setMaxThreadCount(2)
-        self._drafts = self._line(self._drafted, self._draft_failed)
-        self._orders = self._line(self._order_checked, self._defect)
-        self._writes = self._line(self._wrote, self._write_failed)
+        self._drafts = JobLine(self._pool, self, self._drafted, self._draft_failed)
+        self._orders = JobLine(self._pool, self, self._order_checked, self._defect)
+        self._writes = JobLine(self._pool, self, self._wrote, self._write_failed)
         self._drafts.progress.connect(self.progress)
         self._writes.progress.connect(self.progress)
         self._writes.busy_changed.connect(self._writing_ended)
@@ -71,12 +70,6 @@ class Exporter(QObject):
         session.problem_changed.connect(self.refresh)
         session.stale_changed.connect(self.refresh)
         session.planning_changed.connect(self.refresh)
-
-    def _line(self, done: Callable[..., None], failed: Callable[[object], None]) -> JobLine:
-        line = JobLine(self._pool, self)
-        line.done.connect(done)
-        line.failed.connect(failed)
-        return line
 
     @property
     def situation(self) -> Situation:
@@ -269,7 +262,7 @@ class Exporter(QObject):
     def _write_failed(self, error: object) -> None:
         if isinstance(error, PosoptError):
             self._set(write_fault=str(error))
-            self._session.say(Message("error", str(error)))
+            self._session.say(Message("error", error_words(error, self._session.look.tr)))
             self.changed.emit()
         else:
             self._defect(error)

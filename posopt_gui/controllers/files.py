@@ -4,18 +4,26 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import replace
 from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Protocol
 
 from PySide6.QtCore import QObject, QSettings, QStandardPaths, QThreadPool, Signal
 
+from posopt_gui.controllers.guide import guide_file
+from posopt_gui.controllers.path_import import (
+    PATH_SUFFIXES,
+    PathError,
+    is_path_file,
+    path_for,
+    state_with_path,
+)
 from posopt_gui.controllers.report import picture_bytes, report_of
 from posopt_gui.controllers.session import CLOSING_TIME, Message, Session
 from posopt_gui.document.project import ProjectState, state_of_cell
 from posopt_gui.document.project_file import SUFFIX, load_project, save_project
 from posopt_gui.viewmodels.check_sentences import sentence
+from posopt_gui.viewmodels.error_words import file_words
 from posopt_gui.workers.jobs import JobLine
 from solver.errors import InputError, Place, PosoptError
 
@@ -26,7 +34,6 @@ if TYPE_CHECKING:
 
 DEFAULT_CELL: Final = "groove_hw300"
 CELL_SUFFIX: Final = ".toml"
-PATH_SUFFIXES: Final = (".csv", ".txt", ".tsv", ".json", ".ls")
 RECENT_KEY: Final = "files/recent"
 FOLDER_KEY: Final = "files/folder"
 RECENT_LIMIT: Final = 10
@@ -47,7 +54,7 @@ class Questions(Protocol):
         """Ask what to do with changes that were not saved."""
 
     def open_name(self, folder: str) -> str:
-        """Ask which project or cell to open."""
+        """Ask which project, cell or path to open."""
 
     def save_name(self, proposal: str, suffix: str) -> str:
         """Ask where to save; an existing file was agreed to be replaced."""
@@ -72,11 +79,18 @@ class NoQuestions:
 def state_of_argument(file: str | None) -> tuple[ProjectState, Path | None]:
     """The inputs that a window begins with, and the project file that they came from.
 
+    A path file begins with the default cell, into which it is taken once the window is there.
+
     Raises
     ------
     InputError
         When the file, or the shipped cell of that name, cannot be read.
     """
+    if file is not None and is_path_file(file):
+        from solver.io.importers import path_source  # noqa: PLC0415 - loaded when it is needed
+
+        path_source(file)
+        file = None
     if file is not None and Path(file).suffix.lower() == SUFFIX:
         path = Path(file).absolute()
         return load_project(path), path
@@ -87,12 +101,13 @@ class Files(QObject):
     """Knows which file the document is, and asks before unsaved work would be lost.
 
     `title_changed` tells that the name or the mark of changes is another one; `recent_changed`
-    that the list is. `path_refused` carries a path file that could not be read and the error,
-    for a preview of its columns.
+    that the list is. `path_taken` tells that a path file was taken into the project;
+    `path_refused` carries one that could not be read and the error, for a preview of its columns.
     """
 
     title_changed = Signal()
     recent_changed = Signal()
+    path_taken = Signal()
     path_refused = Signal(object, object)
     report_saved = Signal(object)
 
@@ -175,15 +190,31 @@ class Files(QObject):
         return True
 
     def open(self) -> bool:
-        """Ask for a project or a cell, and open it."""
+        """Ask for a project, a cell or a path, and open it."""
         name = self.ask.open_name(str(self.folder))
         return bool(name) and self.open_file(Path(name))
 
     def open_file(self, path: Path) -> bool:
-        """Open a project or a cell; False where it cannot be read or the old one is kept."""
+        """Open a project or a cell, or take a path file into the project.
+
+        False where it cannot be read or the old project is kept. A path file is read off the
+        window's thread; `path_taken` or `path_refused` says what came of it.
+        """
         path = Path(path).absolute()
+        suffix = path.suffix.lower()
+        if suffix in PATH_SUFFIXES:
+            self.import_path(path)
+            return True
+        if suffix not in {SUFFIX, CELL_SUFFIX}:
+            words = "is no project ({project}), cell ({cell}) or path ({paths})"
+            known = ", ".join(PATH_SUFFIXES)
+            text = self._session.look.tr(words, project=SUFFIX, cell=CELL_SUFFIX, paths=known)
+            self._say(InputError(text, Place(path.name)))
+            return False
+        return self._open(path, project=suffix == SUFFIX)
+
+    def _open(self, path: Path, *, project: bool) -> bool:
         try:
-            project = path.suffix.lower() == SUFFIX
             state = load_project(path) if project else state_of_cell(path)
         except PosoptError as error:
             self._say(error)
@@ -206,24 +237,13 @@ class Files(QObject):
         return bool(name) and self._save(with_suffix(Path(name), SUFFIX))
 
     def drop(self, file: str | Path) -> bool:
-        """Open a project or a cell, or take a path file into the project."""
-        path = Path(file).absolute()
-        suffix = path.suffix.lower()
-        if suffix in {SUFFIX, CELL_SUFFIX}:
-            return self.open_file(path)
-        if suffix in PATH_SUFFIXES:
-            self.import_path(path)
-            return True
-        words = "is no project ({project}), cell ({cell}) or path ({paths})"
-        known = ", ".join(PATH_SUFFIXES)
-        text = self._session.look.tr(words, project=SUFFIX, cell=CELL_SUFFIX, paths=known)
-        self._say(InputError(text, Place(path.name)))
-        return False
+        """Open what was dropped on the window."""
+        return self.open_file(Path(file))
 
     def import_path(self, path: Path) -> None:
         """Make a path file the project's path, once it was read and found to be of use."""
         state = self._session.document.state
-        self._imports.submit(lambda _: _with_path(state, path))
+        self._imports.submit(lambda _: path_for(state, path))
 
     def may_close(self) -> bool:
         """Whether nothing would be lost; asks the person where something would."""
@@ -236,12 +256,12 @@ class Files(QObject):
         return self._pool.waitForDone(CLOSING_TIME)
 
     def guide(self) -> str:
-        """Where the user guide is; '' and a sentence where it was not installed."""
-        beside = Path(__file__).resolve().parents[2] / "docs" / "window.md"
-        if beside.is_file():
-            return str(beside)
-        words = self._session.look.tr("The guide is docs/window.md of the sources.")
-        self._session.say(Message("info", words))
+        """Where the user guide is; '' and a sentence where it is not there."""
+        found = guide_file()
+        if found is not None:
+            return str(found)
+        words = self._session.look.tr("The guide is missing; install posopt again.")
+        self._session.say(Message("warning", words))
         return ""
 
     def save_report(self, pictures: Mapping[str, QImage], form: ExportForm | None = None) -> bool:
@@ -314,9 +334,10 @@ class Files(QObject):
         document.edit("Path", state_with_path(document.state, name, data))
         words = self._session.look.tr("The path is now that of {name}.", name=name)
         self._session.say(Message("info", words))
+        self.path_taken.emit()
 
     def _import_failed(self, failure: object) -> None:
-        if isinstance(failure, _PathError):
+        if isinstance(failure, PathError):
             self._say(failure.error)
             self.path_refused.emit(failure.path, failure.error)
         else:
@@ -336,38 +357,23 @@ class Files(QObject):
         self._session.say(Message("error", text))
 
     def _say(self, error: PosoptError) -> None:
-        self._session.say(Message("error", sentence(str(error), self._session.look.tr)))
+        self._session.say(Message("error", self._words_of(error)))
 
+    def _words_of(self, error: PosoptError) -> str:
+        """An error as a sentence that names its file, or the field of the form."""
+        tr = self._session.look.tr
+        place = error.place if isinstance(error, InputError) else None
+        if not isinstance(error, InputError) or place is None:
+            return sentence(str(error), tr)
+        # The form takes a moment to load, which only an error costs.
+        from posopt_gui.viewmodels.input_words import input_words  # noqa: PLC0415
+        from posopt_gui.viewmodels.project_files import PROJECT  # noqa: PLC0415
 
-class _PathError(PosoptError):
-    """A path file that cannot be the path of the project."""
-
-    def __init__(self, path: Path, error: PosoptError) -> None:
-        self.path, self.error = path, error
-        super().__init__(str(error))
+        if place.file == PROJECT:
+            return input_words(error, self._session.document.state.cell, tr)
+        return sentence(f"{file_words(place, tr)}: {error.message}", tr)
 
 
 def with_suffix(path: Path, suffix: str) -> Path:
     """The path with a suffix, unless it has it already."""
     return path if path.suffix.lower() == suffix else path.with_name(path.name + suffix)
-
-
-def state_with_path(state: ProjectState, name: str, data: bytes) -> ProjectState:
-    """The state with a path file in place of its path; what else is said of the path stays."""
-    path = dict(state.cell.get("path") or {})
-    for key in ("line", "parametric"):
-        path.pop(key, None)
-    cell = {**state.cell, "path": {**path, "file": name}}
-    return replace(state, cell=cell, files={name: data}, pins=(), regions=())
-
-
-def _with_path(state: ProjectState, path: Path) -> tuple[str, bytes]:
-    """Read a path file, and try whether the cell can be built with it."""
-    from solver.io.importers import path_source  # noqa: PLC0415 - loaded when it is needed
-
-    try:
-        data = path_source(path).data
-        state_with_path(state, path.name, data).problem()
-    except PosoptError as error:
-        raise _PathError(path, error) from error
-    return path.name, data

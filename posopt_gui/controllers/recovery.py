@@ -20,6 +20,7 @@ from posopt_gui.controllers.files import Files
 from posopt_gui.controllers.session import CLOSING_TIME, Message, Session
 from posopt_gui.document.project import ProjectState
 from posopt_gui.document.project_file import project_bytes, read_project
+from posopt_gui.viewmodels.check_sentences import sentence
 from posopt_gui.workers.jobs import JobLine
 from solver.errors import InputError, Place, PosoptError
 from solver.io.atomic import write_atomically
@@ -112,6 +113,22 @@ class Recovery(QObject):
             return True
         return False
 
+    def tell_kept(self) -> bool:
+        """Say which work was left behind and stays so; False where there is none."""
+        for file in _newest_first(self._folder):
+            lock = _lock_of(file)
+            if not _taken(lock):
+                continue
+            found = self._read(file)
+            lock.give_back()
+            if found is None:
+                continue
+            words = "Unsaved work of {name} is kept; start posopt without a file to recover it."
+            text = self._session.look.tr(words, name=_name_of(found))
+            self._session.say(Message("warning", text))
+            return True
+        return False
+
     def save(self) -> None:
         """Write a copy where something changed since the last one; take it away when saved."""
         document = self._session.document
@@ -180,7 +197,8 @@ class Recovery(QObject):
         if not self._warned:
             self._warned = True
             words = "Your work cannot be kept for recovery, save it often: {reason}"
-            text = self._session.look.tr(words, reason=reason)
+            tr = self._session.look.tr
+            text = tr(words, reason=sentence(reason, tr))
             self._session.say(Message("warning", text))
 
     def _read(self, file: Path) -> Recovered | None:
@@ -196,7 +214,8 @@ class Recovery(QObject):
             with contextlib.suppress(OSError):
                 file.replace(file.with_suffix(DAMAGED))
             words = "Work of an earlier run could not be recovered: {reason}"
-            text = self._session.look.tr(words, reason=str(error))
+            tr = self._session.look.tr
+            text = tr(words, reason=sentence(str(error), tr))
             self._session.say(Message("warning", text))
             return None
 
@@ -218,6 +237,12 @@ def read_recovered(data: bytes, file: str) -> Recovered:
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise InputError("is no whole copy", Place(file)) from error
     return Recovered(state, Path(path) if isinstance(path, str) and path else None)
+
+
+def _name_of(found: Recovered) -> str:
+    if found.path is not None:
+        return found.path.stem
+    return str(found.state.value("cell.name") or "?")
 
 
 def _bytes(state: ProjectState, path: Path | None) -> bytes:

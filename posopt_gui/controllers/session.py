@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QThreadPool, QTimer, Signal, SignalInstance
+from PySide6.QtCore import QObject, QThreadPool, QTimer, SignalInstance
 
+from posopt_gui.controllers.said import Hover as Hover  # noqa: PLC0414 - told from here
+from posopt_gui.controllers.said import Message as Message  # noqa: PLC0414 - told from here
 from posopt_gui.controllers.session_jobs import Planned, answered_by, checked_by, planned_by
+from posopt_gui.controllers.session_state import SessionState
 from posopt_gui.document.document import Document
 from posopt_gui.document.project import ProjectState
 from posopt_gui.look import Look
 from posopt_gui.workers.jobs import JobLine
-from solver.errors import PosoptError
-from solver.model.settings import Scheme
+from posopt_gui.workers.turns import Turns
+from solver.errors import InputError, PosoptError
+from solver.model.scheme import Scheme
 from solver.model.wishes import Pin, Region
 
 if TYPE_CHECKING:
-    from solver.analysis.result import PlanningResult, Sequence
     from solver.model.problem import PlanningProblem
     from solver.pipeline.program_check import ProgramReport
     from solver.pipeline.replanning import Replanned
@@ -30,39 +32,8 @@ CLOSING_TIME = 10_000
 """How long closing waits for a running job to see that it was cancelled [ms]."""
 
 
-@dataclass(frozen=True, slots=True)
-class Hover:
-    """A cell of the map: waypoint, orientation, branch slot, and turn where it is one."""
-
-    waypoint: int
-    orientation: int
-    branch: int
-    turn: int | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Message:
-    """A sentence for the person: severity is 'info', 'warning' or 'error'."""
-
-    severity: str
-    text: str
-    waypoint: int | None = None
-
-
-class Session(QObject):
+class Session(SessionState):
     """What is open, what was planned, and what is looked at."""
-
-    state_changed = Signal()
-    problem_changed = Signal()
-    result_changed = Signal()
-    stale_changed = Signal(bool)
-    cursor_changed = Signal(int)
-    hover_changed = Signal(object)
-    place_changed = Signal(float)
-    planning_changed = Signal(bool)
-    progress = Signal(str, int, int)
-    message = Signal(object)
-    check_changed = Signal()
 
     def __init__(
         self, document: Document, look: Look | None = None, parent: QObject | None = None
@@ -72,26 +43,18 @@ class Session(QObject):
         self.look = look or Look(parent=self)
         self.compared: tuple[Scheme, ...] = (Scheme.EXACT, Scheme.F2)
         self.live = False
+        self.turns = Turns(self)
         self._pool = QThreadPool(self)
         self._pool.setMaxThreadCount(3)
-        self._builds = self._line(self._built, self._build_failed)
-        self._plans = self._line(self._planned, self._plan_failed)
-        self._wishes = self._line(self._answered, self._defect)
-        self._checks = self._line(self._checked, self._check_failed)
+        self._builds = JobLine(self._pool, self, self._built, self._build_failed)
+        self._plans = JobLine(self._pool, self, self._planned, self._plan_failed)
+        self._wishes = JobLine(self._pool, self, self._answered, self._defect)
+        self._checks = JobLine(self._pool, self, self._checked, self._check_failed)
         self._plans.progress.connect(self.progress)
         self._plans.busy_changed.connect(self.planning_changed)
-        self._problem: PlanningProblem | None = None
-        self._problem_error: PosoptError | None = None
-        self._plan_error: PosoptError | None = None
-        self._result: PlanningResult | None = None
-        self._answer: Replanned | None = None
-        self._report: ProgramReport | None = None
         self._planned_state: ProjectState | None = None
         self._ordered = document.state
         self._asked: tuple[tuple[Pin, ...], tuple[Region, ...]] = ((), ())
-        self._stale = self._previewing = False
-        self._place = 0.0
-        self._hover: Hover | None = None
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
         self._timer.setInterval(BUILD_DELAY)
@@ -99,88 +62,10 @@ class Session(QObject):
         self._seen = document.state
         document.changed.connect(self._on_document)
 
-    def _line(self, done: Callable[..., None], failed: Callable[[object], None]) -> JobLine:
-        line = JobLine(self._pool, self)
-        line.done.connect(done)
-        line.failed.connect(failed)
-        return line
-
-    @property
-    def problem(self) -> PlanningProblem | None:
-        """The problem that the inputs state, None where they cannot be used."""
-        return self._problem
-
-    @property
-    def problem_error(self) -> PosoptError | None:
-        """Why the inputs cannot be used."""
-        return self._problem_error
-
-    @property
-    def plan_error(self) -> PosoptError | None:
-        """Why there is no plan for inputs that can be used (an InfeasiblePathError as a rule)."""
-        return self._plan_error
-
-    @property
-    def result(self) -> PlanningResult | None:
-        """The last plan."""
-        return self._result
-
-    @property
-    def answer(self) -> Replanned | None:
-        """The plan under pins and forbidden regions, None where there are none."""
-        return self._answer
-
-    @property
-    def sequence(self) -> Sequence | None:
-        """The sequence that is shown: under the wishes where there are any."""
-        if self._answer is not None and self._answer.sequence is not None:
-            return self._answer.sequence
-        return self._result.sequence if self._result is not None else None
-
-    @property
-    def chosen_result(self) -> PlanningResult | None:
-        """The plan with the shown sequence as its own: what is exported."""
-        if self._result is None or self._answer is None or self._answer.sequence is None:
-            return self._result
-        sequences = {**self._result.sequences, Scheme.EXACT: self._answer.sequence}
-        return replace(self._result, sequences=sequences, scheme=Scheme.EXACT)
-
-    @property
-    def report(self) -> ProgramReport | None:
-        """Checks of the program of the shown sequence."""
-        return self._report
-
-    @property
-    def stale(self) -> bool:
-        """Whether inputs changed since the plan."""
-        return self._stale
-
     @property
     def planning(self) -> bool:
         """Whether a plan is being made."""
         return self._plans.busy
-
-    @property
-    def place(self) -> float:
-        """Place of the playback, in waypoints from 0."""
-        return self._place
-
-    @property
-    def cursor(self) -> int:
-        """The waypoint that is looked at, from 0."""
-        return round(self._place)
-
-    @property
-    def hover(self) -> Hover | None:
-        """The candidate under the mouse."""
-        return self._hover
-
-    @property
-    def waypoints(self) -> int:
-        """Number of waypoints of the plan, or of the path."""
-        if self._result is not None:
-            return len(self._result.problem.toolpath)
-        return len(self._problem.toolpath) if self._problem is not None else 0
 
     def open(self, state: ProjectState, *, saved: bool = True) -> None:
         """Begin with another project; nothing of the one before stays."""
@@ -300,6 +185,7 @@ class Session(QObject):
     def close(self) -> bool:
         """Cancel everything and wait for it; False where a job has not ended in time."""
         self._timer.stop()
+        self.turns.clear()
         for line in (self._builds, self._plans, self._wishes, self._checks):
             line.close()
         return self._pool.waitForDone(CLOSING_TIME)
@@ -358,6 +244,9 @@ class Session(QObject):
         if not isinstance(error, PosoptError):
             self._defect(error)
             return
+        if isinstance(error, InputError):
+            self._plan_refused(error)
+            return
         self._wishes.stop()
         self._checks.stop()
         self._plan_error = error
@@ -365,7 +254,21 @@ class Session(QObject):
         self._planned_state = self._ordered
         self._update_stale()
         self._announce_result()
-        self.message.emit(Message("error", str(error)))
+        # Loaded when something went wrong, not before the window shows.
+        from posopt_gui.viewmodels.trouble_model import plan_words  # noqa: PLC0415
+
+        self.message.emit(Message("error", plan_words(error, self.look.tr)))
+
+    def _plan_refused(self, error: InputError) -> None:
+        """Wrong inputs are no answer to a plan: the one before stays, and is out of date."""
+        from posopt_gui.viewmodels.input_words import input_words  # noqa: PLC0415
+
+        if _inputs(self._ordered) != _inputs(self.document.state):
+            return
+        self._problem, self._problem_error = None, error
+        self._announce(self.problem_changed)
+        words = input_words(error, self.document.state.cell, self.look.tr)
+        self.message.emit(Message("error", words))
 
     def _announce_result(self) -> None:
         self._announce(self.result_changed, self.check_changed)
@@ -408,7 +311,13 @@ class Session(QObject):
         if not isinstance(error, PosoptError):
             self._defect(error)
             return
-        self.message.emit(Message("warning", str(error)))
+        self.message.emit(Message("warning", self._words_of(error)))
+
+    def _words_of(self, error: PosoptError) -> str:
+        # Loaded when something went wrong, not before the window shows.
+        from posopt_gui.viewmodels.error_words import error_words  # noqa: PLC0415
+
+        return error_words(error, self.look.tr)
 
     def _defect(self, error: object) -> None:
         text = f"{type(error).__name__}: {error}"

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from posopt_gui.document.project import ProjectState
-from solver.model.settings import Scheme
-from solver.model.wishes import Pin, Region
-
 if TYPE_CHECKING:
+    from posopt_gui.document.project import ProjectState
     from solver.analysis.result import PlanningResult
+    from solver.model.scheme import Scheme
+    from solver.model.wishes import Pin, Region
     from solver.pipeline.program_check import ProgramReport
     from solver.pipeline.replanning import Replanned
     from solver.progress import Monitor

@@ -9,7 +9,6 @@ from typing import Final
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QHideEvent, QShowEvent
 from PySide6.QtWidgets import (
-    QComboBox,
     QDialog,
     QFileDialog,
     QHBoxLayout,
@@ -30,6 +29,7 @@ from posopt_gui.dialogs.file_questions import FileQuestions
 from posopt_gui.dialogs.program_preview import ProgramPreview
 from posopt_gui.dialogs.verdict_banner import VerdictBanner
 from posopt_gui.viewmodels.export_model import ExportStage, ExportView, export_view, format_of
+from posopt_gui.views.quiet_editors import QuietCombo
 
 SIZE: Final = (1240, 780)
 LEAST_SIZE: Final = (960, 620)
@@ -73,7 +73,7 @@ class ExportDialog(QDialog):
         self._checks_title, self._preview_title = QLabel(), QLabel()
         for title in (self._checks_title, self._preview_title):
             title.setObjectName("paneTitle")
-        self.file_choice = QComboBox()
+        self.file_choice = QuietCombo()
         self.note = QLabel()
         self.note.setWordWrap(True)
         self.note.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import math
 
-from PySide6.QtCore import QLocale, QSignalBlocker, Qt, Signal
-from PySide6.QtGui import QWheelEvent
+from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import (
-    QCheckBox,
-    QComboBox,
     QDoubleSpinBox,
     QFrame,
     QGridLayout,
@@ -21,6 +18,8 @@ from PySide6.QtWidgets import (
 
 from posopt_gui.look import Look
 from posopt_gui.viewmodels.export_model import FORMATS, ExportView, Situation
+from posopt_gui.views.flag_edit import FlagEdit
+from posopt_gui.views.quiet_editors import QuietCombo, QuietSpinBox
 from solver.units import MM, MM_PER_M
 
 
@@ -46,16 +45,16 @@ class ExportFormPanel(QFrame):
     def _make_fields(self) -> None:
         self._format_label, self._path_label = QLabel(), QLabel()
         self._reason_label, self._clearance_label = QLabel(), QLabel()
-        self.format = QComboBox()
+        self.format = QuietCombo()
         self.path = QLineEdit()
         self.browse = QPushButton()
         self.path_fault = QLabel()
         self.path_fault.setWordWrap(True)
         self.path_fault.setProperty("tone", "error")
-        self.simplify = QCheckBox()
+        self.simplify = FlagEdit()
         self.tolerance = _millimetres(0.01, 0.5, 0.05, 2)
         self.tolerance.setValue(0.1)
-        self.accept = QCheckBox()
+        self.accept = FlagEdit()
         self.clearance = _millimetres(0.1, 50.0, 1.0, 1)
         self.reason = QLineEdit()
         self.override = QPushButton()
@@ -206,24 +205,10 @@ def _mark(field: QLineEdit, *, wrong: bool) -> None:
         field.style().polish(field)
 
 
-class _SpinBox(QDoubleSpinBox):
-    """A spin box with a decimal point in every language, which the wheel moves when focused."""
-
-    def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802 - Qt's name
-        """Leave the wheel to the page while the field has no focus."""
-        if self.hasFocus():
-            super().wheelEvent(event)
-        else:
-            event.ignore()
-
-
 def _millimetres(low: float, high: float, step: float, decimals: int) -> QDoubleSpinBox:
-    box = _SpinBox()
-    box.setLocale(QLocale(QLocale.Language.C))
-    box.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+    box = QuietSpinBox()
     box.setDecimals(decimals)
     box.setRange(low, high)
     box.setSingleStep(step)
     box.setSuffix(" mm")
-    box.setKeyboardTracking(False)
     return box

@@ -7,6 +7,7 @@ from pathlib import Path
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from posopt_gui.controllers.files import CELL_SUFFIX, Choice, with_suffix
+from posopt_gui.controllers.path_import import PATH_SUFFIXES
 from posopt_gui.document.project_file import SUFFIX
 from posopt_gui.look import Look
 
@@ -37,9 +38,11 @@ class FileQuestions:
         return Choice.DISCARD if clicked is discard else Choice.CANCEL
 
     def open_name(self, folder: str) -> str:
-        """Ask which project or cell to open."""
-        words = self._tr("Projects and cells")
-        kinds = f"{words} (*{SUFFIX} *{CELL_SUFFIX})"
+        """Ask which project, cell or path to open."""
+        words = self._tr("Projects, cells and paths")
+        endings = (SUFFIX, CELL_SUFFIX, *PATH_SUFFIXES)
+        names = " ".join(f"*{one} *{one.upper()}" for one in endings)
+        kinds = f"{words} ({names})"
         return QFileDialog.getOpenFileName(self._parent, self._tr("Open"), folder, kinds)[0]
 
     def save_name(self, proposal: str, suffix: str) -> str:

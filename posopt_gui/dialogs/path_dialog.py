@@ -23,6 +23,7 @@ from posopt_gui.controllers.path_loader import PathLoader
 from posopt_gui.controllers.session import Session
 from posopt_gui.viewmodels.cell_facts import Catalogue, facts_of
 from posopt_gui.viewmodels.cell_form import put
+from posopt_gui.viewmodels.error_words import error_words
 from posopt_gui.viewmodels.form_fields_path import common_fields, orientation_fields, source_fields
 from posopt_gui.viewmodels.form_types import Cell, Field, at
 from posopt_gui.viewmodels.path_preview import PathPreview, path_table
@@ -54,7 +55,7 @@ class PathDialog(QDialog):
         self._preview = preview
         state = session.document.state
         self._cell: Cell = {**state.cell, "path": path_table(state.cell, preview.source.file)}
-        self._facts = facts_of(state.cell, Catalogue(), state.folder)
+        self._facts = facts_of(state.cell, Catalogue(), state.folder, state.files)
         self._header = preview.header
         self._mapping: dict[str, int] | None = None
         if preview.mappable and not preview.understood:
@@ -108,7 +109,7 @@ class PathDialog(QDialog):
         """Show a file as it was examined."""
         self._preview = preview
         self._show_table()
-        self._show_sentence(preview.sentence)
+        self._show_sentence(self._error_sentence())
         self.accept_button.setEnabled(preview.toolpath is not None)
 
     def accept(self) -> None:
@@ -135,7 +136,11 @@ class PathDialog(QDialog):
         for row in self._rows.values():
             row.retranslate()
         self._show_mapping()
-        self._show_sentence(self._preview.sentence)
+        self._show_sentence(self._error_sentence())
+
+    def _error_sentence(self) -> str:
+        error = self._preview.error
+        return error_words(error, self._tr) if error is not None else ""
 
     def retheme(self) -> None:
         """Set every colour again."""
@@ -151,6 +156,7 @@ class PathDialog(QDialog):
         self.table = QTableWidget(self)
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
+        self.table.setTabKeyNavigation(False)
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
         self._titles_button = FlagEdit(self)
         self._titles_button.setChecked(self._header)

@@ -20,7 +20,8 @@ from posopt_gui.controllers.session import Session
 from posopt_gui.dialogs.beam_sketch import BeamSketch
 from posopt_gui.viewmodels.cell_edits import with_placement
 from posopt_gui.viewmodels.cell_facts import Catalogue, facts_of, in_mm
-from posopt_gui.viewmodels.path_preview import sentence_of
+from posopt_gui.viewmodels.error_words import error_words
+from posopt_gui.viewmodels.number_words import decimal
 from posopt_gui.viewmodels.touched_points import (
     ENDS,
     FLANGES,
@@ -49,7 +50,7 @@ class PlacementDialog(QDialog):
         self._session = session
         self._tr = session.look.tr
         state = session.document.state
-        facts = facts_of(state.cell, Catalogue(), state.folder)
+        facts = facts_of(state.cell, Catalogue(), state.folder, state.files)
         self._workpiece = facts.workpiece
         self._placement: FloatArray | None = None
         self._numbers: list[list[NumberEdit]] = []
@@ -201,7 +202,7 @@ class PlacementDialog(QDialog):
 
     def _refresh(self) -> None:
         state = self._session.document.state
-        self._workpiece = facts_of(state.cell, Catalogue(), state.folder).workpiece
+        self._workpiece = facts_of(state.cell, Catalogue(), state.folder, state.files).workpiece
         self._compute()
 
     def _compute(self) -> None:
@@ -225,13 +226,14 @@ class PlacementDialog(QDialog):
         try:
             found = placement_from_points(points, corner, workpiece.section, workpiece.length)
         except InputError as error:
-            self._say(sentence_of(error), True)
+            self._say(error_words(error, self._tr), True)
             return
         self._placement = found
-        position = ", ".join(f"{in_mm(float(one)):.2f}" for one in found[:3, 3])
-        angles = ", ".join(f"{one * DEG_PER_RAD:.3f}" for one in wpr_from_rotation(found[:3, :3]))
+        turned = wpr_from_rotation(found[:3, :3])
+        position = ", ".join(decimal(in_mm(float(one)), 2) for one in found[:3, 3])
+        angles = ", ".join(decimal(one * DEG_PER_RAD, 3) for one in turned)
         self._say(
-            self._tr("Centre of the beam in fanuc_world: {position} mm; W, P, R: {angles} deg",
+            self._tr("Centre of the beam in fanuc_world: {position} mm; W, P, R: {angles}°",
                      position=position, angles=angles), False,
         )  # fmt: skip
 

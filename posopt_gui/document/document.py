@@ -87,7 +87,11 @@ class Document(QObject):
         self.edit(label, replace(self.state, regions=regions))
 
     def edit(self, label: str, state: ProjectState, merge: str = "") -> None:
-        """Make a new state current; what had been undone is dropped."""
+        """Make a new state current, with the files that it names.
+
+        What had been undone is dropped.
+        """
+        state = state.with_its_files()
         last = self._steps[self._index]
         merges = bool(merge) and merge == last.merge and last.state is not self._saved
         del self._steps[self._index + 1 :]

@@ -8,7 +8,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from solver.errors import InputError
+from posopt_gui.document.embedding import embedded
+from posopt_gui.document.keys import changed_value, value_at
+from solver.errors import InputError, Place
 from solver.model.wishes import Pin, Region
 
 if TYPE_CHECKING:
@@ -24,7 +26,7 @@ class ProjectState:
     cell : mapping
         The tables of a cell's TOML file as nested dictionaries and lists.
     files : mapping of name to bytes
-        Path files that the cell refers to.
+        The files that the cell refers to, by the names that it gives them.
     pins, regions : tuples
         What the sequence must pass and must not pass.
     folder : str
@@ -46,65 +48,35 @@ class ProjectState:
             Naming the key of the cell that cannot be used (`error.place.key`).
         """
         # The catalogue takes a moment to load; the window is on screen before.
+        from posopt_gui.viewmodels.project_files import PROJECT  # noqa: PLC0415
         from solver.catalog.cells import read_cell  # noqa: PLC0415
         from solver.catalog.toml_reader import Table  # noqa: PLC0415
 
-        file = str(Path(self.folder) / "cell.toml") if self.folder else "project"
-        return read_cell(Table(self.cell, file), files=self.files)
+        table = Table(self.cell, PROJECT, folder=Path(self.folder))
+        return read_cell(table, files=self.files)
 
     def value(self, key: str) -> Any:
         """What a dotted key such as 'beam.section' or 'fixtures.0.min_mm' holds; None without."""
-        found: Any = self.cell
-        for part in key.split("."):
-            found = _child(found, part)
-            if found is None:
-                return None
-        return found
+        return value_at(self.cell, key)
 
     def with_value(self, key: str, value: Any) -> ProjectState:
         """The state with another value under a dotted key; None removes the key."""
-        return replace(self, cell=_changed(self.cell, key.split("."), value))
+        return replace(self, cell=changed_value(self.cell, key, value))
 
-
-def _child(container: Any, part: str) -> Any:
-    if isinstance(container, Mapping):
-        return container.get(part)
-    if isinstance(container, list) and part.isdecimal() and int(part) < len(container):
-        return container[int(part)]
-    return None
-
-
-def _changed(container: Any, parts: list[str], value: Any) -> Any:
-    first, rest = parts[0], parts[1:]
-    if isinstance(container, list):
-        items = list(container)
-        index = int(first)
-        if rest:
-            items[index] = _changed(items[index], rest, value)
-        elif value is None:
-            del items[index]
-        elif index == len(items):
-            items.append(value)
-        else:
-            items[index] = value
-        return items
-    table = dict(container or {})
-    if rest:
-        table[first] = _changed(table.get(first, {}), rest, value)
-    elif value is None:
-        table.pop(first, None)
-    else:
-        table[first] = value
-    return table
+    def with_its_files(self) -> ProjectState:
+        """The state with every file that its cell names; itself where there is nothing to read."""
+        cell, files = embedded(self.cell, self.files, self.folder)
+        return self if files is self.files else replace(self, cell=cell, files=files)
 
 
 def state_of_cell(name_or_path: str | Path) -> ProjectState:
-    """The inputs of a shipped cell or of a cell's TOML file, its path file included.
+    """The inputs of a shipped cell or of a cell's TOML file, all files that it names included.
 
     Raises
     ------
     InputError
-        If the cell, or the path file that it names, cannot be read.
+        If the cell, or the path file that it names, cannot be read. What is wrong with another
+        file is told when the cell is built.
     """
     from solver.catalog.names import file_of  # noqa: PLC0415
     from solver.catalog.toml_reader import read_toml  # noqa: PLC0415
@@ -113,13 +85,13 @@ def state_of_cell(name_or_path: str | Path) -> ProjectState:
     path = file_of("cells", name_or_path)
     table = read_toml(path)
     values = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    files = {}
-    reference = values.get("path", {}).get("file")
-    if isinstance(reference, str):
-        name = Path(reference).name
-        files[name] = path_source(table.folder / reference).data
-        values["path"]["file"] = name
-    return ProjectState(cell=values, files=files, folder=str(path.parent.absolute()))
+    if not isinstance(values.get("cell"), dict):
+        raise InputError("is no cell: its table [cell] is missing", Place(str(path)))
+    state = ProjectState(cell=values, folder=str(path.parent.absolute())).with_its_files()
+    reference = state.value("path.file")
+    if isinstance(reference, str) and reference not in state.files:
+        path_source(table.folder / reference)
+    return state
 
 
 def key_of_error(error: InputError) -> str | None:

@@ -4,21 +4,29 @@ from __future__ import annotations
 
 import base64
 import json
-import math
+import stat
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
 from posopt_gui.document.project import ProjectState
+from posopt_gui.document.project_json import located, strict_json
 from solver.errors import InputError, Place
 from solver.io.atomic import write_atomically
 from solver.model.wishes import Pin, Region
 
 FORMAT: Final = "posopt-project"
-VERSION: Final = 1
+VERSION: Final = 2
+READ_VERSIONS: Final = (1, 2)
+"""A project of version 1 carries its path file alone."""
+
 SUFFIX: Final = ".posopt"
 SIZE_LIMIT: Final = 256 * 1024 * 1024
 """Largest project file that is read [bytes]."""
+
+KEYS: Final = ("format", "version", "folder", "cell", "files", "pins", "regions")
+PIN_KEYS: Final = ("waypoint", "lean", "branch", "turn")
+REGION_KEYS: Final = ("first", "last", "low", "high", "branch")
 
 DEPTH_LIMIT: Final = 50
 """Deepest nesting of the cell's tables and lists."""
@@ -67,9 +75,16 @@ def project_bytes(state: ProjectState) -> bytes:
         ],
     }
     try:
-        return json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False).encode()
+        data = json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False).encode()
     except (TypeError, ValueError, RecursionError) as error:
         raise InputError(f"the project cannot be saved ({_short(error)})") from error
+    if len(data) > SIZE_LIMIT:
+        size, most = (one // 2**20 for one in (len(data), SIZE_LIMIT))
+        raise InputError(
+            f"the project cannot be saved: with its files it has {size} MB, at most {most} MB are "
+            "read; use smaller meshes"
+        )
+    return data
 
 
 def load_project(path: Path) -> ProjectState:
@@ -82,31 +97,46 @@ def load_project(path: Path) -> ProjectState:
     """
     place = Place(str(path))
     try:
-        if Path(path).stat().st_size > SIZE_LIMIT:
-            raise InputError("larger than any project", place)
+        status = Path(path).stat()
+        if not stat.S_ISREG(status.st_mode):
+            raise InputError("is no file, expected a posopt project", place)
+        if status.st_size > SIZE_LIMIT:
+            size, most = (one // 2**20 for one in (status.st_size, SIZE_LIMIT))
+            raise InputError(f"has {size} MB, expected a project of at most {most} MB", place)
         data = Path(path).read_bytes()
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(f"cannot be read ({reason})", place) from error
-    return read_project(data, str(path))
+    # What an older version left out is taken in where it is still there.
+    return read_project(data, str(path)).with_its_files()
 
 
 def read_project(data: bytes, file: str) -> ProjectState:
-    """Read the content of a project file; `file` is its name for errors."""
-    place = Place(file)
+    """Read the content of a project file; `file` is its name for errors.
+
+    Raises
+    ------
+    InputError
+        With line and column of what does not belong there.
+    """
+    document = strict_json(data, file)
     try:
-        document = json.loads(
-            data.decode("utf-8-sig"), parse_constant=_refuse_constant, parse_float=_finite
-        )
-    except (UnicodeDecodeError, ValueError, RecursionError) as error:
-        raise InputError(f"is no whole posopt project ({_short(error)})", place) from error
+        if b"\\u" in data:
+            _refuse_half_characters(document, file)
+        return _project(document, file)
+    except InputError as error:
+        raise located(error, data) from error
+
+
+def _project(document: Any, file: str) -> ProjectState:
+    place = Place(file)
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise InputError("is no posopt project: its 'format' is missing", place)
     version = document.get("version")
-    if isinstance(version, bool) or version != VERSION:
-        raise InputError(f"has version {_short(version)}, this posopt reads {VERSION}", place)
-    if b"\\u" in data:
-        _refuse_half_characters(document, file)
+    if isinstance(version, bool) or version not in READ_VERSIONS:
+        known = " and ".join(str(one) for one in READ_VERSIONS)
+        raise InputError(f"has version {_short(version)}, this posopt reads {known}", place)
+    _refuse_unknown(document, KEYS, "", file)
     return ProjectState(
         cell=_cell(document, file),
         files=_files(document, file),
@@ -116,18 +146,6 @@ def read_project(data: bytes, file: str) -> ProjectState:
         ),
         folder=_text(document.get("folder", ""), "folder", file),
     )
-
-
-def _refuse_constant(name: str) -> float:
-    raise ValueError(f"{name} is no number")
-
-
-def _finite(text: str) -> float:
-    # JSON's grammar knows numbers that are too large for a float.
-    value = float(text)
-    if not math.isfinite(value):
-        raise ValueError(f"{text[:20]} is too large for a number")
-    return value
 
 
 def _short(value: object) -> str:
@@ -145,6 +163,14 @@ def _cell(document: Mapping[str, Any], file: str) -> dict[str, Any]:
     if _depth(cell) > DEPTH_LIMIT:
         raise InputError("tables are nested too deeply", Place(file, key="cell"))
     return cell
+
+
+def _refuse_unknown(table: Any, known: tuple[str, ...], key: str, file: str) -> None:
+    """Refuse what this posopt does not know, since it would be lost when the project is saved."""
+    for name in table if isinstance(table, dict) else ():
+        if name not in known:
+            place = Place(file, key=f"{key}.{name}" if key else name)
+            raise InputError(f"unknown key, expected one of {', '.join(known)}", place)
 
 
 def _refuse_half_characters(data: object, file: str) -> None:
@@ -184,6 +210,7 @@ def _rows(document: Mapping[str, Any], key: str, file: str) -> list[Any]:
 
 def _pin(row: Any, file: str, index: int) -> Pin:
     key = f"pins[{index}]"
+    _refuse_unknown(row, PIN_KEYS, key, file)
     return Pin(
         _whole(row, "waypoint", key, file),
         _number(row, "lean", key, file),
@@ -194,6 +221,7 @@ def _pin(row: Any, file: str, index: int) -> Pin:
 
 def _region(row: Any, file: str, index: int) -> Region:
     key = f"regions[{index}]"
+    _refuse_unknown(row, REGION_KEYS, key, file)
     return Region(
         _whole(row, "first", key, file),
         _whole(row, "last", key, file),

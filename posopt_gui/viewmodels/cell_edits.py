@@ -15,7 +15,7 @@ from posopt_gui.viewmodels.cell_facts import (
     has_free_dimensions,
     in_mm,
 )
-from posopt_gui.viewmodels.form_types import Cell, at, rows_of, table_of, with_table
+from posopt_gui.viewmodels.form_types import Cell, at, table_of, with_table
 from solver.catalog.cell_path import FILE_KEYS, KINDS
 from solver.catalog.cell_workpiece import DIMENSIONS
 from solver.model.toolpath import Frame
@@ -226,28 +226,6 @@ def with_face(cell: Cell, kind: str, face: str, facts: Facts) -> Cell:
     if known is not None and table.get("edge") not in known.edges:
         table.pop("edge", None)
     return with_table(cell, "path", {**path, kind: table})
-
-
-def with_new_fixture(cell: Cell) -> tuple[Cell, int]:
-    """The cell with one more box, and its index."""
-    fixtures = rows_of(cell, "fixtures")
-    names = {one.get("name") for one in fixtures}
-    number = next(one for one in range(1, len(names) + 2) if f"box_{one}" not in names)
-    box = {
-        "name": f"box_{number}",
-        "shape": "box",
-        "min_mm": [1200.0, -100.0, 0.0],
-        "max_mm": [1400.0, 100.0, 200.0],
-    }
-    return {**cell, "fixtures": [*fixtures, box]}, len(fixtures)
-
-
-def without_fixture(cell: Cell, index: int) -> Cell:
-    """The cell without one of its fixtures."""
-    fixtures = rows_of(cell, "fixtures")
-    del fixtures[index]
-    rest = {key: value for key, value in cell.items() if key != "fixtures"}
-    return {**rest, "fixtures": fixtures} if fixtures else rest
 
 
 def _is_number(value: object) -> bool:

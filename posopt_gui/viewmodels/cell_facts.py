@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 from posopt_gui.viewmodels.form_types import Cell, Choice, at, table_of
 from solver.catalog.beams import BeamEntry, beam_entries, load_beam, read_dimensions
@@ -21,6 +22,9 @@ from solver.model.tool import Tool
 from solver.model.workpiece import BeamSection, Workpiece
 from solver.units import MM_PER_M
 
+Files = Mapping[str, bytes]
+Found = TypeVar("Found")
+
 FREE = "free"
 """Name of the standard of a section that is stated by its dimensions."""
 
@@ -32,8 +36,8 @@ class Catalogue:
         self.beams: tuple[BeamEntry, ...] = beam_entries()
         self.robots = _choices("robots")
         self.tools = _choices("tools")
-        self._robots: dict[tuple[str, str], Robot] = {}
-        self._tools: dict[tuple[str, str], Tool] = {}
+        self._robots: dict[tuple[str, str, bytes | None], Robot] = {}
+        self._tools: dict[tuple[str, str, bytes | None], Tool] = {}
 
     @property
     def series(self) -> tuple[str, ...]:
@@ -49,27 +53,32 @@ class Catalogue:
         wanted = normalised(name) if isinstance(name, str) else None
         return next((one for one in self.beams if normalised(one.section.name) == wanted), None)
 
-    def robot(self, name: object, folder: str) -> Robot | None:
+    def robot(self, name: object, folder: str, files: Files) -> Robot | None:
         """A robot by name or file; None where there is none."""
-        if not isinstance(name, str):
-            return None
-        if (folder, name) not in self._robots:
-            try:
-                self._robots[folder, name] = load_robot(name, relative_to=Path(folder))
-            except InputError:
-                return None
-        return self._robots[folder, name]
+        return _looked_up(self._robots, load_robot, name, folder, files)
 
-    def tool(self, name: object, folder: str) -> Tool | None:
+    def tool(self, name: object, folder: str, files: Files) -> Tool | None:
         """A tool by name or file; None where there is none."""
-        if not isinstance(name, str):
+        return _looked_up(self._tools, load_tool, name, folder, files)
+
+
+def _looked_up(
+    known: dict[tuple[str, str, bytes | None], Found],
+    load: Callable[..., Found],
+    name: object,
+    folder: str,
+    files: Files,
+) -> Found | None:
+    """What has a name, in memory or in the catalogue; read once."""
+    if not isinstance(name, str):
+        return None
+    key = folder, name, files.get(name)
+    if key not in known:
+        try:
+            known[key] = load(name, relative_to=Path(folder), files=files)
+        except InputError:
             return None
-        if (folder, name) not in self._tools:
-            try:
-                self._tools[folder, name] = load_tool(name, relative_to=Path(folder))
-            except InputError:
-                return None
-        return self._tools[folder, name]
+    return known[key]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,11 +101,14 @@ class Facts:
         return self.robot.world_height if self.robot is not None else 0.0
 
 
-def facts_of(cell: Cell, catalogue: Catalogue, folder: str = "") -> Facts:
-    """Look up what a cell refers to."""
-    robot = catalogue.robot(at(cell, "robot.model"), folder)
-    tool = catalogue.tool(at(cell, "tool.model"), folder)
-    named = _named_section(cell, catalogue, folder)
+def facts_of(
+    cell: Cell, catalogue: Catalogue, folder: str = "", files: Files | None = None
+) -> Facts:
+    """Look up what a cell refers to, in memory first."""
+    files = files or {}
+    robot = catalogue.robot(at(cell, "robot.model"), folder, files)
+    tool = catalogue.tool(at(cell, "tool.model"), folder, files)
+    named = _named_section(cell, catalogue, folder, files)
     section = _section(cell, named)
     workpiece = None
     # A mesh is not read here: it may take long, and only its group is shown.
@@ -120,7 +132,9 @@ def _choices(kind: str) -> tuple[Choice, ...]:
     )
 
 
-def _named_section(cell: Cell, catalogue: Catalogue, folder: str) -> BeamSection | None:
+def _named_section(
+    cell: Cell, catalogue: Catalogue, folder: str, files: Files
+) -> BeamSection | None:
     name = at(cell, "beam.section")
     entry = catalogue.entry(name)
     if entry is not None:
@@ -128,7 +142,7 @@ def _named_section(cell: Cell, catalogue: Catalogue, folder: str) -> BeamSection
     if not isinstance(name, str) or has_free_dimensions(cell):
         return None
     try:
-        return load_beam(name, relative_to=Path(folder))
+        return load_beam(name, relative_to=Path(folder), files=files)
     except InputError:
         return None
 

@@ -14,12 +14,12 @@ from posopt_gui.viewmodels.cell_facts import Catalogue, Facts, facts_of
 from posopt_gui.viewmodels.form_fields_cell import (
     beam_section,
     cell_section,
-    fixtures_section,
     placement_section,
     robot_section,
     tool_section,
     workpiece_section,
 )
+from posopt_gui.viewmodels.form_fields_fixtures import fixtures_section
 from posopt_gui.viewmodels.form_fields_path import path_section
 from posopt_gui.viewmodels.form_fields_program import (
     accuracy_section,
@@ -101,7 +101,14 @@ def cell_form(
     fixture: int = 0,
 ) -> Form:
     """The form of a cell; `fixture` is the one whose fields are shown, from 0."""
-    facts = facts_of(cell, catalogue, folder)
+    facts = facts_of(cell, catalogue, folder, files)
+    return form_of(cell, catalogue, facts, files or {}, fixture)
+
+
+def form_of(
+    cell: Cell, catalogue: Catalogue, facts: Facts, files: Mapping[str, bytes], fixture: int
+) -> Form:
+    """The form of a cell of which the facts are known."""
     mesh = "workpiece" in cell
     sections = (
         robot_section(cell, catalogue, facts),
@@ -109,7 +116,7 @@ def cell_form(
         workpiece_section(cell) if mesh else beam_section(cell, catalogue, facts),
         placement_section(cell, facts),
         fixtures_section(cell, fixture),
-        path_section(cell, facts, files or {}),
+        path_section(cell, facts, files),
         lean_section(cell),
         limits_section(cell),
         cost_section(cell),

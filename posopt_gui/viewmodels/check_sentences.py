@@ -11,9 +11,16 @@ from collections.abc import Callable
 from functools import cache
 from typing import Final
 
+from posopt_gui.viewmodels.number_words import plain_words
+from posopt_gui.viewmodels.sentences_cells import CELL_SENTENCES
+from posopt_gui.viewmodels.sentences_general import GENERAL_SENTENCES
+from posopt_gui.viewmodels.sentences_meshes import MESH_SENTENCES
+from posopt_gui.viewmodels.sentences_paths import PATH_SENTENCES
+from posopt_gui.viewmodels.sentences_programs import PROGRAM_SENTENCES
+
 Translate = Callable[..., str]
 
-PATTERNS: Final[tuple[str, ...]] = (
+CHECK_SENTENCES: Final[tuple[str, ...]] = (
     "J and L moves in order",
     "every margin kept",
     "as in the cell",
@@ -90,6 +97,13 @@ PATTERNS: Final[tuple[str, ...]] = (
     "{file}: cannot be written ({reason})",
     "{file}: is no whole posopt project ({reason})",
     "{file}: is no posopt project: its 'format' is missing",
+    "{file}: is no file, expected a posopt project",
+    "{file}: is no cell: its table [cell] is missing",
+    "{file}: has {size} MB, expected a project of at most {most} MB",
+    "{file}: unknown key, expected one of {names}",
+    "the project cannot be saved: with its files it has {size} MB, at most {most} MB are read",
+    "use smaller meshes",
+    "the project cannot be saved ({reason})",
     "{file}: has version {version}, this posopt reads {known}",
     "{file}: there is no such file, expected a path file",
     "a program name has upper-case letters A-Z, digits and _, and begins with a letter, got {name}",
@@ -102,14 +116,26 @@ PATTERNS: Final[tuple[str, ...]] = (
     "waypoint {number} has no feasible pose at all",
     "every feasible pose of waypoint {number} is forbidden",
     "make the region smaller",
-    "the pinned place of waypoint {number} is not feasible, or comes nearer than the required "
-    "clearance",
     "pin another lean",
-    "at {place}",
-    "{what} at {place}",
-    "{name} in {file}",
 )
-"""English sentences, the more special ones first; {names} are what differs."""
+"""Sentences of the checks and of files, the more special ones first; {names} are what differs."""
+
+PLACES: Final = ("at {place}", "{what} at {place}", "{name} in {file}")
+"""Where something is; tried last of all, since they fit much."""
+
+PATTERNS: Final[tuple[str, ...]] = (
+    *PROGRAM_SENTENCES,
+    *CELL_SENTENCES,
+    *MESH_SENTENCES,
+    *PATH_SENTENCES,
+    *CHECK_SENTENCES,
+    *GENERAL_SENTENCES,
+    *PLACES,
+)
+"""English sentences, in the order in which they are tried."""
+
+LISTS: Final = tuple(pattern for pattern in PATTERNS if "; " in pattern)
+"""Sentences in which a semicolon does not part two of them."""
 
 CHECK_NAMES: Final[tuple[str, ...]] = (
     "program name", "cell digest", "hash", "reach", "motion", "program flow",
@@ -138,7 +164,9 @@ _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 
 def sentence(text: str, tr: Translate) -> str:
     """A sentence of a check as `tr` says it; as it is where its pattern is not known."""
-    return tr("; ").join(_part(part, tr) for part in text.split("; "))
+    if any(_expression(pattern).fullmatch(text) for pattern in LISTS):
+        return plain_words(_part(text, tr))
+    return plain_words(tr("; ").join(_part(part, tr) for part in text.split("; ")))
 
 
 def _part(text: str, tr: Translate) -> str:
@@ -153,13 +181,18 @@ def _part(text: str, tr: Translate) -> str:
     return text if shown == name else shown
 
 
+def _held(name: str) -> str:
+    """What a placeholder holds: the bounds of a range are one word each."""
+    return r"\S+" if name in {"low", "high"} else ".+?"
+
+
 @cache
 def _expression(pattern: str) -> re.Pattern[str]:
     pieces = _PLACEHOLDER.split(pattern)
     # Every second piece is the name of a placeholder.
     return re.compile(
         "".join(
-            f"(?P<{piece}>.+?)" if index % 2 else re.escape(piece)
+            f"(?P<{piece}>{_held(piece)})" if index % 2 else re.escape(piece)
             for index, piece in enumerate(pieces)
         )
     )

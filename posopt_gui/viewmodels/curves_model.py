@@ -5,16 +5,19 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from posopt_gui.viewmodels.number_words import NOTHING, decimal, signed
 from solver.analysis.metrics import JointMotion, joint_motion
-from solver.analysis.result import PlanningResult, Sequence
-from solver.model.problem import PlanningProblem
-from solver.pipeline.program_check import ProgramReport
 from solver.transforms import FloatArray
 from solver.units import DEG_PER_RAD, MM_PER_M
+
+if TYPE_CHECKING:
+    from solver.analysis.result import PlanningResult, Sequence
+    from solver.model.problem import PlanningProblem
+    from solver.pipeline.program_check import ProgramReport
 
 Translate = Callable[..., str]
 

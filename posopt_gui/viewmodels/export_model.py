@@ -10,6 +10,7 @@ from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from posopt_gui.viewmodels.check_figures import check_figure, figures
 from posopt_gui.viewmodels.check_sentences import sentence
 
 if TYPE_CHECKING:
@@ -269,16 +270,15 @@ def check_rows(checks: Sequence[Check], tr: Translate) -> tuple[CheckRow, ...]:
 
 
 def _row(check: Check, tr: Translate) -> CheckRow:
-    unit = tr(check.unit)
     shown, bound = figures(check.value, check.limit)
-    limit = f"{bound} {unit}"
+    limit = check_figure(bound, check.unit, tr)
     if check.assumed:
         limit += f" ({tr('assumed')})"
     return CheckRow(
         passed=check.passed,
         word=tr("passed") if check.passed else tr("FAILED"),
         name=tr(check.name),
-        value=f"{shown} {unit}",
+        value=check_figure(shown, check.unit, tr),
         limit=limit,
         detail=sentence(check.detail, tr),
         waypoint=waypoint_of(check),
@@ -291,29 +291,6 @@ def waypoint_of(check: Check) -> int | None:
         return check.waypoint
     found = _WAYPOINT.search(check.detail)
     return int(found.group(1)) - 1 if found is not None else None
-
-
-def figures(value: float, limit: float) -> tuple[str, str]:
-    """A value and its limit in few figures, but as many as tell them apart."""
-    for more in range(8):
-        shown, bound = number(value, more), number(limit, more)
-        if shown != bound or value == limit:
-            break
-    return shown, bound
-
-
-def number(value: float, more: int = 0) -> str:
-    """A value of a check in few figures, and `more` decimals; what is not known is a dash."""
-    if math.isnan(value):
-        return "\N{EN DASH}"
-    if math.isinf(value):
-        return "\N{INFINITY}" if value > 0.0 else "-\N{INFINITY}"
-    size = abs(value)
-    if 0.0 < size < 0.001:
-        return f"{value:.1e}"
-    decimals = 1 if size >= 100.0 else 2 if size >= 1.0 else 4
-    text = f"{value:.{decimals + more}f}"
-    return text.rstrip("0").rstrip(".") if "." in text else text
 
 
 def with_suffix(path: str, post: str) -> str:

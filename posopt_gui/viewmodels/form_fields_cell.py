@@ -1,8 +1,6 @@
-"""Fields of cell, robot, tool, beam, placement and fixtures."""
+"""Fields of cell, robot, tool, beam and placement."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping
 
 from posopt_gui.viewmodels.cell_edits import (
     CENTRE,
@@ -15,25 +13,31 @@ from posopt_gui.viewmodels.cell_edits import (
     with_standard,
 )
 from posopt_gui.viewmodels.cell_facts import FREE, Catalogue, Facts, in_mm
-from posopt_gui.viewmodels.form_types import Cell, Choice, Field, Kind, Note, Section, at, rows_of
-from solver.catalog.bodies import SHAPES
+from posopt_gui.viewmodels.form_fields_fixtures import MESH_TIP
+from posopt_gui.viewmodels.form_types import (
+    ANGLES,
+    AXES,
+    Cell,
+    Choice,
+    Field,
+    Kind,
+    Note,
+    Section,
+    at,
+    plain,
+    point_field,
+)
+from posopt_gui.viewmodels.number_words import decimal
 from solver.catalog.cell_workpiece import PLACEMENT_FRAMES
 from solver.io.importers.options import LENGTH_UNITS
 from solver.model.robot import JOINTS
 from solver.model.toolpath import Frame
 from solver.units import DEG_PER_RAD
 
-AXES = ("X", "Y", "Z")
-ANGLES = ("W", "P", "R")
 FRAME_TIP = (
     "fanuc_world lies at the height of the J2 axis and is what the pendant shows; floor is the "
     "robot's mounting face. Their axes are parallel."
 )
-
-
-def plain(values: tuple[str, ...]) -> tuple[Choice, ...]:
-    """Choices whose labels are the values themselves."""
-    return tuple(Choice(one, one, plain=True) for one in values)
 
 
 def cell_section(cell: Cell) -> Section:
@@ -86,7 +90,7 @@ def tool_section(cell: Cell, catalogue: Catalogue, facts: Facts) -> Section:
     notes: tuple[Note, ...] = ()
     if facts.tool is not None:
         tool = facts.tool
-        x, y, z = (f"{in_mm(float(one)):.1f}" for one in tool.tcp[:3, 3])
+        x, y, z = (decimal(in_mm(float(one)), 1) for one in tool.tcp[:3, 3])
         notes = (
             Note("TCP at {x}, {y}, {z} mm of the flange", (("x", x), ("y", y), ("z", z))),
             Note("{mass} kg, {count} bodies", (("mass", f"{tool.mass:g}"),
@@ -200,14 +204,14 @@ def placement_section(cell: Cell, facts: Facts) -> Section:
         )  # fmt: skip
     if table == "beam" and rule_of(cell) == LOWER_EDGE:
         fields += [
-            _point("beam.position_xy_mm", "Plan point", "Centre of the beam seen from above.",
+            point_field("beam.position_xy_mm", "Plan point", "Centre of the beam seen from above.",
                    AXES[:2]),
             Field("beam.lower_edge_mm", "Lower edge", Kind.NUMBER, "Height of the lowest edge of "
                   "the beam.", "mm", step=5.0, required=True),
         ]  # fmt: skip
     else:
         tip = "Centre of the beam." if table == "beam" else "Where the origin of the mesh stands."
-        fields.append(_point(f"{table}.position_mm", "Position", tip))
+        fields.append(point_field(f"{table}.position_mm", "Position", tip))
     fields.append(
         Field(f"{table}.wpr_deg", "Orientation", Kind.NUMBERS, "FANUC's W, P, R of the beam's "
               "axes: x along the beam, y across the flanges, z along the height. 90, 0, 90 lays "
@@ -225,11 +229,6 @@ def placement_section(cell: Cell, facts: Facts) -> Section:
     )
 
 
-def _point(key: str, label: str, tip: str, parts: tuple[str, ...] = AXES) -> Field:
-    return Field(key, label, Kind.NUMBERS, tip, "mm", step=5.0,
-                 parts=parts, required=True)  # fmt: skip
-
-
 def _placed(cell: Cell, table: str) -> str:
     return str(at(cell, f"{table}.frame", Frame.FLOOR.value))
 
@@ -245,7 +244,7 @@ def _places(facts: Facts) -> tuple[Note, ...]:
         ("Centre in floor: {x}, {y}, {z} mm", 0.0),
     ):
         values = zip("xyz", (x, y, z - shift), strict=True)
-        notes.append(Note(text, tuple((axis, f"{in_mm(one):.1f}") for axis, one in values)))
+        notes.append(Note(text, tuple((axis, decimal(in_mm(one), 1)) for axis, one in values)))
     return tuple(notes)
 
 
@@ -255,105 +254,10 @@ def workpiece_section(cell: Cell) -> Section:
         Field("workpiece.name", "Name", Kind.TEXT, "Name of the workpiece.", required=True),
         Field("workpiece.group", "Group", Kind.TEXT, "What 'touches' of a pass names.",
               default=at(cell, "workpiece.name")),
-        Field("workpiece.mesh", "Mesh file", Kind.TEXT, "A closed triangle mesh: STL, OBJ, PLY, "
-              "glTF or GLB.", required=True),
+        Field("workpiece.mesh", "Mesh file", Kind.FILE, MESH_TIP, required=True),
         Field("workpiece.unit", "Unit of the mesh", Kind.CHOICE, "Unit of the mesh file.",
               choices=plain(tuple(LENGTH_UNITS)), default="mm"),
     )  # fmt: skip
     return Section(
         "beam", "Workpiece", fields, ("workpiece",), str(at(cell, "workpiece.name", "")), open=True
     )
-
-
-def fixtures_section(cell: Cell, chosen: int) -> Section:
-    """The floor, the list of fixtures, and the fields of the chosen one."""
-    fixtures = rows_of(cell, "fixtures")
-    fields = [
-        Field("cell.floor", "Floor", Kind.FLAG, "Whether the floor is a fixture: a box of 10 x 10 "
-              "m below the robot's mounting face.", default=False),
-    ]  # fmt: skip
-    if 0 <= chosen < len(fixtures):
-        fields += fixture_fields(fixtures[chosen], f"fixtures.{chosen}")
-    return Section(
-        "fixtures",
-        "Fixtures",
-        tuple(fields),
-        ("fixtures",),
-        summary=", ".join(str(one.get("name", "?")) for one in fixtures),
-        extra="fixtures",
-        before=fields[1].key if len(fields) > 1 else "",
-    )
-
-
-def fixture_fields(fixture: Mapping[str, object], key: str) -> list[Field]:
-    """Fields of one fixture, by its shape; coordinates are in floor."""
-    fields = [Field(f"{key}.name", "Name", Kind.TEXT, "Name in messages.", required=True)]
-    turned = Field(f"{key}.wpr_deg", "Orientation", Kind.NUMBERS, "W, P, R in floor.", "deg",
-                   default=[0.0, 0.0, 0.0], parts=ANGLES)  # fmt: skip
-    if "mesh" in fixture:
-        return [
-            *fields,
-            Field(f"{key}.mesh", "Mesh file", Kind.TEXT, "A closed triangle mesh: STL, OBJ, PLY, "
-                  "glTF or GLB.", required=True),
-            Field(f"{key}.unit", "Unit of the mesh", Kind.CHOICE, "Unit of the mesh file.",
-                  choices=plain(tuple(LENGTH_UNITS)), default="mm"),
-            Field(f"{key}.position_mm", "Position", Kind.NUMBERS, "Where the origin of the mesh "
-                  "stands in floor.", "mm", step=5.0,
-                  default=[0.0, 0.0, 0.0], parts=AXES),
-            turned,
-        ]  # fmt: skip
-    fields.append(
-        Field(f"{key}.shape", "Shape", Kind.CHOICE, "Shape of the fixture.",
-              choices=tuple(Choice(one, one) for one in SHAPES), required=True,
-              apply=lambda cell, shape: with_shape(cell, key, shape))
-    )  # fmt: skip
-    shape = fixture.get("shape")
-    radius = Field(f"{key}.radius_mm", "Radius", Kind.NUMBER, "Radius.", "mm", 0.0,
-                   above=True, step=5.0, required=True)  # fmt: skip
-    if shape == "sphere":
-        return [*fields, _point(f"{key}.centre_mm", "Centre", "Centre in floor."), radius]
-    if shape in ("cylinder", "capsule"):
-        return [
-            *fields,
-            _point(f"{key}.from_mm", "One end", "Centre of one end of the axis, in floor."),
-            _point(f"{key}.to_mm", "Other end", "Centre of the other end, in floor."),
-            radius,
-        ]
-    if "centre_mm" in fixture or "size_mm" in fixture:
-        return [
-            *fields,
-            _point(f"{key}.centre_mm", "Centre", "Centre of the box in floor."),
-            _point(f"{key}.size_mm", "Size", "Full extent of the box along its axes."),
-            turned,
-        ]
-    return [
-        *fields,
-        _point(f"{key}.min_mm", "Lower corner", "Corner of the box with the least X, Y, Z in "
-               "floor."),
-        _point(f"{key}.max_mm", "Upper corner", "Corner of the box with the greatest X, Y, Z in "
-               "floor."),
-    ]  # fmt: skip
-
-
-_SHAPE_KEYS: Mapping[str, Mapping[str, object]] = {
-    "box": {"min_mm": [1200.0, -100.0, 0.0], "max_mm": [1400.0, 100.0, 200.0]},
-    "sphere": {"centre_mm": [1300.0, 0.0, 100.0], "radius_mm": 100.0},
-    "cylinder": {
-        "from_mm": [1300.0, 0.0, 0.0],
-        "to_mm": [1300.0, 0.0, 200.0],
-        "radius_mm": 100.0,
-    },
-}
-
-
-def with_shape(cell: Cell, key: str, shape: str) -> Cell:
-    """The cell with another shape of a fixture, at a place of its own."""
-    index = int(key.rpartition(".")[2])
-    fixtures = rows_of(cell, "fixtures")
-    old = fixtures[index]
-    kept = {name: old[name] for name in ("name", "group") if name in old}
-    measures = _SHAPE_KEYS["cylinder" if shape == "capsule" else shape]
-    if {old.get("shape"), shape} == {"cylinder", "capsule"}:
-        measures = {name: old[name] for name in measures if name in old}
-    fixtures[index] = {**kept, "shape": shape, **measures}
-    return {**cell, "fixtures": fixtures}

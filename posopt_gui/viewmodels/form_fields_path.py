@@ -19,8 +19,18 @@ from posopt_gui.viewmodels.cell_edits import (
     with_spacing,
 )
 from posopt_gui.viewmodels.cell_facts import Facts, in_mm
-from posopt_gui.viewmodels.form_fields_cell import ANGLES, plain
-from posopt_gui.viewmodels.form_types import Cell, Choice, Field, Kind, Section, at, table_of
+from posopt_gui.viewmodels.form_types import (
+    ANGLES,
+    Cell,
+    Choice,
+    Field,
+    Kind,
+    Section,
+    at,
+    plain,
+    table_of,
+)
+from posopt_gui.viewmodels.project_files import path_file
 from solver.catalog.cell_path import FRAMES
 from solver.io.importers.beam_faces import Face
 from solver.io.importers.options import CONVENTIONS, LENGTH_UNITS, MAX_FEED, ImportOptions
@@ -33,7 +43,7 @@ AS_THE_FILE = "as the file states"
 def path_section(cell: Cell, facts: Facts, files: Mapping[str, bytes]) -> Section:
     """The path; which fields there are follows its kind."""
     kind = path_kind_of(cell)
-    name = next(iter(files), "")
+    name = path_file(files)
     kinds = [Choice("file", "a file")]
     if "workpiece" not in cell:
         kinds += [Choice("line", "a line on a face"), Choice("parametric", "passes along a face")]
@@ -229,7 +239,7 @@ def _passes_fields(cell: Cell, facts: Facts) -> list[Field]:
             Field("path.parametric.zigzag", "Zig-zag", Kind.FLAG, "Whether every second pass runs "
                   "back.", default=True),
             Field("path.parametric.turn_with_travel", "Turn the tool", Kind.FLAG, "Whether the "
-                  "tool turns by 180 deg for the way back; a ball cuts both ways and need not.",
+                  "tool turns by 180° for the way back; a ball cuts both ways and need not.",
                   default=True),
         ]  # fmt: skip
     fields.append(

@@ -48,9 +48,9 @@ def lean_section(cell: Cell) -> Section:
                   for number, letters in enumerate(BRANCH_LETTERS)
               )),
         Field("settings.turns", "Turns", Kind.CHOICE, "Every full turn of a joint inside its "
-              "limits, or only the one within 180 deg.", default=default.turns.value,
+              "limits, or only the one within 180°.", default=default.turns.value,
               choices=(Choice(Turns.ALL.value, "all within the limits"),
-                       Choice(Turns.PRINCIPAL.value, "within 180 deg"))),
+                       Choice(Turns.PRINCIPAL.value, "within 180°"))),
     )  # fmt: skip
     sweep = at(cell, "settings.lean_deg")
     summary = ""
@@ -161,7 +161,9 @@ def cost_section(cell: Cell) -> Section:
         Field("settings.scheme", "Scheme", Kind.CHOICE, "The search: exact is proven optimal on "
               "the graph; f, f1 and f2 are the heuristic searches that it is compared with.",
               default=default.scheme.value,
-              choices=tuple(Choice(one.value, one.value, plain=True) for one in Scheme)),
+              choices=tuple(
+                  Choice(one.value, one.value, plain=one is not Scheme.EXACT) for one in Scheme
+              )),
         Field("settings.edge_cost", "Joint changes", Kind.CHOICE, "How a change of joints between "
               "neighbouring waypoints is counted.", default=default.edge_cost.value,
               choices=(Choice(EdgeCost.ABSOLUTE.value, "absolute"),
@@ -172,9 +174,9 @@ def cost_section(cell: Cell) -> Section:
               "that term is zero.", "mm", 0.0, above=True, step=10.0,
               default=in_mm(weights.comfort)),
         _weight("lean", "Weight of lean", "Weight of the squared deviation from the nominal lean, "
-                "in units of 45 deg.", weights.lean),
+                "in units of 45°.", weights.lean),
         _weight("lead", "Weight of lead", "Weight of the squared deviation from the nominal lead, "
-                "in units of 45 deg.", weights.lead),
+                "in units of 45°.", weights.lead),
         _weight("link", "Weight of links", "Factor of the joint cost between passes.",
                 weights.link),
         Field("settings.heuristic_weight", "Heuristic weight", Kind.NUMBER, "Weight of the "
@@ -189,6 +191,7 @@ def cost_section(cell: Cell) -> Section:
         fields,
         ("settings.weights", "settings"),
         summary=str(at(cell, "settings.scheme", default.scheme.value)),
+        said=True,
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, Final
 
+from posopt_gui.viewmodels.number_words import in_figures, with_unit
 from solver.catalog.toml_reader import MAXIMUM_ANGLE, MAXIMUM_LENGTH
 from solver.units import DEG, MM
 
@@ -16,6 +17,9 @@ _LIMITS: Final[Mapping[str, float]] = {
     "deg": MAXIMUM_ANGLE / DEG,
 }
 """Largest magnitude that a cell may state in a unit."""
+
+AXES: Final = ("X", "Y", "Z")
+ANGLES: Final = ("W", "P", "R")
 
 Cell = Mapping[str, Any]
 """The tables of a cell's TOML file as nested dictionaries and lists."""
@@ -32,6 +36,9 @@ class Kind(Enum):
     TEXT = "text"
     WORDS = "words"
     """A list of texts, separated by commas."""
+
+    FILE = "file"
+    """Name of a file, typed or chosen."""
 
     SUBSET = "subset"
     """Some of the numbers from 0, ascending."""
@@ -144,7 +151,8 @@ class Note:
 class Section:
     """A group of fields.
 
-    `extra` names what a view shows besides them, above the field `before` ('' for the end);
+    A summary with `said` is a word of the language, any other one a name or a number. `extra`
+    names what a view shows besides them, above the field `before` ('' for the end);
     `keys` are the tables of the cell that the section speaks of, `summary` says in a few words
     what is chosen.
     """
@@ -154,23 +162,39 @@ class Section:
     fields: tuple[Field, ...]
     keys: tuple[str, ...] = ()
     summary: str = ""
+    said: bool = False
     extra: str = ""
     before: str = ""
     notes: tuple[Note, ...] = ()
     open: bool = False
 
 
+def plain(values: tuple[str, ...]) -> tuple[Choice, ...]:
+    """Choices whose labels are the values themselves."""
+    return tuple(Choice(one, one, plain=True) for one in values)
+
+
+def point_field(
+    key: str, label: str, tip: str, parts: tuple[str, ...] = AXES, low: float | None = None
+) -> Field:
+    """A field of a point, or of extents above `low`, that the cell must state."""
+    return Field(
+        key, label, Kind.NUMBERS, tip, "mm", low, above=low is not None, step=5.0, parts=parts,
+        required=True,
+    )  # fmt: skip
+
+
 def range_of(field: Field) -> Note | None:
     """The range of a field's numbers in words."""
     if field.kind not in (Kind.NUMBER, Kind.INTEGER, Kind.NUMBERS):
         return None
-    unit = f" {field.unit}" if field.unit else ""
+    unit = with_unit("", field.unit)
     low, high = field.low, field.high
     values = [("unit", unit)]
     if low is not None:
-        values.append(("low", f"{low:.10g}"))
+        values.append(("low", in_figures(low)))
     if high is not None:
-        values.append(("high", f"{high:.10g}"))
+        values.append(("high", in_figures(high)))
     if low is not None and high is not None:
         text = "Above {low}, up to {high}{unit}" if field.above else "{low} to {high}{unit}"
     elif low is not None:

@@ -14,16 +14,16 @@ from posopt_gui.viewmodels.number_words import (
     signed,
     subject_words,
 )
-from solver.analysis.result import PlanningResult, Sequence
 from solver.candidates.outcomes import Outcome
 from solver.kinematics.configuration import config_string
-from solver.model.problem import PlanningProblem
 from solver.transforms import FloatArray
 from solver.units import DEG, DEG_PER_RAD, MM_PER_M
 
 if TYPE_CHECKING:
+    from solver.analysis.result import PlanningResult, Sequence
     from solver.candidates.explain import Explanation
     from solver.candidates.margins import FilterMargin
+    from solver.model.problem import PlanningProblem
 
 Translate = Callable[..., str]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +19,12 @@ from posopt_gui.viewmodels.map_colours import (
     Layer,
     Scale,
 )
-from solver.candidates.generate import CandidateSet
 from solver.candidates.outcomes import Outcome
 from solver.transforms import FloatArray, IntArray
 from solver.units import DEG_PER_RAD, MM_PER_M
+
+if TYPE_CHECKING:
+    from solver.candidates.generate import CandidateSet
 
 PERCENT = 100.0
 

@@ -15,15 +15,38 @@ NOTHING = "–"
 
 _JOINTS = re.compile(r"J\d")
 _PART = re.compile(r"(?P<group>.+) \((?P<part>.+)\)")
+_NEGATIVE_ZERO = re.compile(r"(?<![\w.])-(0(?:\.0+)?)(?![\d.]*[1-9])(?![\w])")
+_DEGREES = re.compile(r"(?<=\d) deg\b")
 _NUMBERED = re.compile(r"(?P<name>.+)_(?P<number>\d+)")
 
 
 def decimal(value: float, decimals: int) -> str:
     """A number with a true minus; a dash where it is not finite."""
+    return copied_decimal(value, decimals).replace("-", "−")
+
+
+def copied_decimal(value: float, decimals: int) -> str:
+    """A number as other programs read it, never a negative zero; a dash where it is not finite."""
     if not math.isfinite(value):
         return NOTHING
-    rounded = round(value, decimals) + 0.0
-    return f"{rounded:.{decimals}f}".replace("-", "−")
+    return f"{round(value, decimals) + 0.0:.{decimals}f}"
+
+
+def in_figures(value: float, figures: int = 10) -> str:
+    """A number in its own figures, as many as it needs; never a negative zero."""
+    return f"{value + 0.0:.{figures}g}"
+
+
+def with_unit(number: str, unit: str) -> str:
+    """A number with its unit, which a degree sign follows without a blank; '' for none."""
+    if unit == "deg":
+        return f"{number}°"
+    return f"{number} {unit}" if unit else number
+
+
+def plain_words(text: str) -> str:
+    """Numbers of a sentence as the window says them: no negative zero, and ° for deg."""
+    return _DEGREES.sub("°", _NEGATIVE_ZERO.sub(r"\1", text))
 
 
 def signed(value: float, decimals: int) -> str:

@@ -11,12 +11,13 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from posopt_gui.viewmodels.form_types import Cell, table_of
+from posopt_gui.viewmodels.project_files import PROJECT
 from solver.catalog.cell_path import KINDS, PathOwner, read_path
 from solver.catalog.cell_workpiece import read_workpiece
 from solver.catalog.robots import load_robot
 from solver.catalog.toml_reader import Table
 from solver.catalog.tools import load_tool
-from solver.errors import InputError, Place
+from solver.errors import InputError
 from solver.io.importers import Source
 from solver.io.importers.columns import (
     FIELDS,
@@ -114,25 +115,13 @@ class PathPreview:
         words = ("the frame of the poses is not stated", "the file states", "no orientation")
         return any(word in self.error.message for word in words)
 
-    @property
-    def sentence(self) -> str:
-        """Why it cannot be read, in one sentence; '' where it can."""
-        return sentence_of(self.error) if self.error is not None else ""
-
-
-def sentence_of(error: InputError) -> str:
-    """An error's sentence: with name and line of a file, without the key of a cell."""
-    place = error.place
-    if place is None or place.line is None:
-        return error.message[:1].upper() + error.message[1:]
-    return f"{Place(Path(place.file).name, place.line, place.column)}: {error.message}"
-
 
 def examine(
     source: Source,
     cell: Cell,
     *,
     folder: str = "",
+    files: Mapping[str, bytes] | None = None,
     path: Mapping[str, Any] | None = None,
     mapping: Mapping[str, int] | None = None,
     header: bool | None = None,
@@ -147,6 +136,8 @@ def examine(
         The cell that takes the path.
     folder : str
         Where relative references of the cell start.
+    files : mapping of name to bytes, optional
+        Files that the cell names and the project carries.
     path : mapping, optional
         The cell's table `path` for this file; None takes `path_table`.
     mapping : mapping of field to column from 0, optional
@@ -164,7 +155,7 @@ def examine(
     table = dict(path_table(cell, source.file) if path is None else path)
     try:
         taken = taken_source(found)
-        toolpath = _read(taken, cell, {**table, "file": taken.file}, folder)
+        toolpath = _read(taken, cell, {**table, "file": taken.file}, folder, files)
     except InputError as error:
         return _with(found, error=error)
     return _with(found, toolpath=toolpath)
@@ -246,14 +237,20 @@ def _table(source: Source, mapping: Mapping[str, int] | None, header: bool | Non
     )
 
 
-def _read(source: Source, cell: Cell, path: Mapping[str, Any], folder: str) -> Toolpath:
+def _read(
+    source: Source,
+    cell: Cell,
+    path: Mapping[str, Any],
+    folder: str,
+    files: Mapping[str, bytes] | None,
+) -> Toolpath:
     # As in a project: references start in its folder, the file itself is in memory.
-    document = Table({**cell, "path": dict(path)}, str(Path(folder) / "cell.toml"))
+    document = Table({**cell, "path": dict(path)}, PROJECT, folder=Path(folder))
     robot_name = document.table("robot").text("model")
     tool_name = document.table("tool").text("model")
-    robot = load_robot(robot_name, relative_to=document.folder)
-    tool = load_tool(tool_name, relative_to=document.folder)
-    workpiece = read_workpiece(document, None, robot)
+    robot = load_robot(robot_name, relative_to=document.folder, files=files)
+    tool = load_tool(tool_name, relative_to=document.folder, files=files)
+    workpiece = read_workpiece(document, None, robot, files)
     owner = PathOwner(workpiece, robot, tool, {source.file: source.data})
     return read_path(document.table("path"), owner)
 

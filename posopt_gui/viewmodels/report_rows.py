@@ -7,9 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from posopt_gui.viewmodels.check_sentences import sentence
+from posopt_gui.viewmodels.number_words import copied_decimal, signed
 from solver.units import DEG_PER_RAD, MM_PER_M
 
 if TYPE_CHECKING:
@@ -43,7 +42,7 @@ def setting_rows(problem: PlanningProblem, tr: Translate) -> Table:
     settings, program = problem.settings, problem.program
     length = f"{problem.workpiece.length * MM_PER_M:g} mm"
     position = problem.fanuc_world_from_floor @ problem.workpiece.placement
-    place = ", ".join(f"{value * MM_PER_M + 0.0:.1f}" for value in position[:3, 3])
+    place = ", ".join(copied_decimal(value * MM_PER_M, 1) for value in position[:3, 3])
     margin = settings.self_margin
     fixtures = ", ".join(sentence(one.name, tr) for one in problem.fixtures)
     rows = [
@@ -133,7 +132,7 @@ def motion_rows(document: Mapping[str, Any], tr: Translate) -> Table:
 
 
 def _gain(value: float) -> str:
-    return f"{100.0 * value:+.0f} %" if np.isfinite(value) else "\N{EN DASH}"
+    return f"{signed(100.0 * value, 0)} %" if math.isfinite(value) else "\N{EN DASH}"
 
 
 def reference_rows(document: Mapping[str, Any], tr: Translate) -> Table:
@@ -189,9 +188,9 @@ def waypoint_rows(document: Mapping[str, Any], bounds: FloatArray, tr: Translate
         rows.append(
             (
                 str(one["waypoint"]),
-                *(f"{value + 0.0:.1f}" for value in one["position_mm"]),
-                *(f"{value + 0.0:.3f}" for value in one["joints_deg"]),
-                f"{one['lean_deg'] + 0.0:.2f}",
+                *(copied_decimal(value, 1) for value in one["position_mm"]),
+                *(copied_decimal(value, 3) for value in one["joints_deg"]),
+                copied_decimal(one["lean_deg"], 2),
                 one["config"],
                 down(min(one["clearance_mm"], float(bound) * MM_PER_M)),
                 f"{one['manipulability_m3']:.3f}",

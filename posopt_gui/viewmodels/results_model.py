@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from posopt_gui.viewmodels.check_figures import check_figure, figures
 from posopt_gui.viewmodels.check_sentences import sentence
 from posopt_gui.viewmodels.curves_model import Track, kind_label
 from posopt_gui.viewmodels.number_words import NOTHING, clearance_mm, decimal, signed
 from posopt_gui.viewmodels.trouble_model import Trouble
 from solver.analysis.check import Check
 from solver.analysis.metrics import lean_edge_share
-from solver.analysis.result import PlanningResult, Sequence
 from solver.candidates.outcomes import Outcome
-from solver.model.problem import PlanningProblem
-from solver.pipeline.program_check import ProgramReport
-from solver.pipeline.replanning import Replanned
 from solver.units import DEG_PER_RAD, MM_PER_M
+
+if TYPE_CHECKING:
+    from solver.analysis.result import PlanningResult, Sequence
+    from solver.model.problem import PlanningProblem
+    from solver.pipeline.program_check import ProgramReport
+    from solver.pipeline.replanning import Replanned
 
 Translate = Callable[..., str]
 
@@ -235,9 +239,11 @@ def _plan_notes(result: PlanningResult, sequence: Sequence, translate: Translate
 
 def check_words(check: Check, translate: Translate) -> str:
     """A check of the program in a sentence: its name, value, limit and place."""
+    value, bound = figures(check.value, check.limit)
     limit = translate(
-        "{name}: {value} {unit}, limit {limit}",
-        name=translate(check.name), value=f"{check.value:.4g}", unit=translate(check.unit),
-        limit=f"{check.limit:.4g}",
-    )  # fmt: skip
+        "{name}: {value}, limit {limit}",
+        name=translate(check.name),
+        value=check_figure(value, check.unit, translate),
+        limit=bound,
+    )
     return f"{limit} · {sentence(check.detail, translate)}" if check.detail else limit

@@ -28,7 +28,6 @@ from posopt_gui.viewmodels.surface_mesh import (
 )
 from solver.catalog.names import resource_folder
 from solver.errors import InputError, Place
-from solver.kinematics.arm import link_offsets
 from solver.model.robot import JOINTS, Robot
 from solver.model.shapes import Cylinder
 from solver.transforms import FloatArray, inverse, rigid, rotation_x, rotation_y
@@ -173,6 +172,8 @@ def _outline_origin(robot: Robot, link: int) -> FloatArray:
     """(3,) origin of an outline's frame in the link frame: of the sixth it is the flange's face."""
     if link != JOINTS:
         return np.zeros(3)
+    from solver.kinematics.arm import link_offsets  # noqa: PLC0415 - numba
+
     offset = link_offsets(robot)[JOINTS]
     origin: FloatArray = (inverse(offset) @ robot.flange)[:3, 3]
     return origin

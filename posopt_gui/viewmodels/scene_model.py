@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,14 +19,15 @@ from posopt_gui.viewmodels.surface_mesh import (
     moved,
     shaded,
 )
-from solver.analysis.result import PlanningResult
 from solver.candidates.outcomes import Outcome
-from solver.kinematics.arm import forward, forward_links, link_offsets
-from solver.model.problem import PlanningProblem
 from solver.model.robot import FLOOR_GROUP, JOINTS
 from solver.model.shapes import ToolRole
 from solver.transforms import FloatArray, inverse
 from solver.units import DEG, MM
+
+if TYPE_CHECKING:
+    from solver.analysis.result import PlanningResult
+    from solver.model.problem import PlanningProblem
 
 TOOL_COLOURS: Mapping[ToolRole, Colour] = {
     ToolRole.CLEARANCE: (92, 114, 138, 255),
@@ -104,6 +106,8 @@ class CellModel:
 
     def links_at(self, joints: FloatArray) -> FloatArray:
         """(7, 4, 4) fanuc_world_from_link at pendant joints (6,) [rad]."""
+        from solver.kinematics.arm import forward_links  # noqa: PLC0415 - numba
+
         return forward_links(self.problem.robot, joints)
 
     def points_at(self, joints: FloatArray) -> FloatArray:
@@ -118,6 +122,8 @@ class CellModel:
 def cell_model(problem: PlanningProblem) -> CellModel:
     """Build the meshes of a problem; some tens of milliseconds."""
     robot = problem.robot
+    from solver.kinematics.arm import link_offsets  # noqa: PLC0415 - numba
+
     offsets = link_offsets(robot)
     link_from_flange = inverse(offsets[TOOL_CARRIER]) @ robot.flange
     tool = [
@@ -197,6 +203,8 @@ def tcp_trail(problem: PlanningProblem, pendant: FloatArray) -> FloatArray:
     places = np.linspace(0.0, len(pendant) - 1.0, count)
     rows = np.arange(len(pendant))
     joints = np.column_stack([np.interp(places, rows, pendant[:, j]) for j in range(JOINTS)])
+    from solver.kinematics.arm import forward  # noqa: PLC0415 - numba
+
     trail: FloatArray = forward(problem.robot, joints, problem.tool.tcp)[:, :3, 3]
     return trail
 
@@ -228,6 +236,8 @@ def ghost_at(result: PlanningResult, waypoint: int, orientation: int, branch: in
 
 def named_frames(problem: PlanningProblem, joints: FloatArray) -> list[tuple[str, FloatArray]]:
     """Names and poses (4, 4) in fanuc_world of the frames that people work with."""
+    from solver.kinematics.arm import forward  # noqa: PLC0415 - numba
+
     robot = problem.robot
     floor = problem.fanuc_world_from_floor
     return [

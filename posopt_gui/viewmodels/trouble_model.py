@@ -8,25 +8,19 @@ from collections.abc import Sequence as Rows
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from posopt_gui.viewmodels.check_sentences import sentence
+from posopt_gui.viewmodels.error_words import error_words
 from posopt_gui.viewmodels.number_words import decimal, subject_words
-from solver.errors import InputError, PosoptError
+from solver.errors import PosoptError
 from solver.units import DEG_PER_RAD
 
 if TYPE_CHECKING:
+    from posopt_gui.viewmodels.form_types import Cell
     from solver.pipeline.replanning import Replanned
 
 _IN_ALL = re.compile(r"; (\d+) waypoints in all have none")
 
 Translate = Callable[..., str]
-
-REASONS = (
-    "waypoint {number} has no feasible pose at all",
-    "the pinned place of waypoint {number} is not feasible, or comes nearer than the required "
-    "clearance; pin another lean",
-    "every feasible pose of waypoint {number} is forbidden; make the region smaller",
-    "no allowed step leads from waypoint {number} to waypoint {next}",
-)
-"""Sentences of re-planning, recognised by their pattern so that they can be translated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,10 +46,14 @@ def trouble_of(
     plan_error: PosoptError | None,
     answer: Replanned | None,
     translate: Translate,
+    cell: Cell | None = None,
 ) -> Trouble | None:
-    """What keeps the session from a sequence; None where nothing does."""
+    """What keeps the session from a sequence; None where nothing does.
+
+    With a `cell`, a wrong input is called by the name of its field.
+    """
     if problem_error is not None:
-        return _input_trouble(problem_error, translate)
+        return _input_trouble(problem_error, translate, cell or {})
     if plan_error is not None:
         return _plan_trouble(plan_error, translate)
     if answer is not None and answer.sequence is None:
@@ -66,11 +64,19 @@ def trouble_of(
     return None
 
 
-def _input_trouble(error: PosoptError, translate: Translate) -> Trouble:
-    key = error.place.key if isinstance(error, InputError) and error.place is not None else None
-    message = error.message if isinstance(error, InputError) else str(error)
-    text = f"{key}: {message}" if key else message
-    return Trouble(translate("The inputs cannot be used."), (Cause(text),), "", key)
+def plan_words(error: PosoptError, translate: Translate) -> str:
+    """Why there is no plan, in one or two sentences."""
+    trouble = _plan_trouble(error, translate)
+    return " ".join([trouble.headline, *(one.text for one in trouble.causes[:1])])
+
+
+def _input_trouble(error: PosoptError, translate: Translate, cell: Cell) -> Trouble:
+    # The form takes a moment to load, which only a wrong input costs.
+    from posopt_gui.viewmodels.input_words import input_key, input_words  # noqa: PLC0415
+
+    cause = Cause(input_words(error, cell, translate))
+    key = input_key(error, cell)
+    return Trouble(translate("The inputs cannot be used."), (cause,), "", key)
 
 
 def _plan_trouble(error: PosoptError, translate: Translate) -> Trouble:
@@ -87,7 +93,7 @@ def _plan_trouble(error: PosoptError, translate: Translate) -> Trouble:
         return Trouble(headline, tuple(_layer_cause(one, translate) for one in empty), advice)
     if cut is not None:
         return Trouble(headline, tuple(_gap_cause(one, translate) for one in cut.gaps), advice)
-    return Trouble(headline, (Cause(str(error)),))
+    return Trouble(headline, (Cause(error_words(error, translate)),))
 
 
 def _layer_cause(layer: Any, translate: Translate) -> Cause:
@@ -126,12 +132,7 @@ def _gap_cause(gap: Any, translate: Translate) -> Cause:
 
 def reason_words(reason: str, translate: Translate) -> str:
     """A sentence of re-planning in the window's language."""
-    for pattern in REASONS:
-        expression = re.escape(pattern).replace(r"\{number\}", r"(?P<number>\d+)")
-        found = re.fullmatch(expression.replace(r"\{next\}", r"(?P<next>\d+)"), reason)
-        if found is not None:
-            return _capital(translate(pattern, **found.groupdict())) + translate(".")
-    return reason
+    return _capital(sentence(reason, translate)) + translate(".")
 
 
 def _capital(text: str) -> str:

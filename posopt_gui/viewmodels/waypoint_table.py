@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from collections.abc import Sequence as Rows
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from posopt_gui.viewmodels.number_words import NOTHING, clearance_mm, decimal, pair_words
-from solver.analysis.result import PlanningResult, Sequence
 from solver.kinematics.configuration import config_string
 from solver.transforms import FloatArray
 from solver.units import DEG_PER_RAD, MM, MM_PER_M
+
+if TYPE_CHECKING:
+    from solver.analysis.result import PlanningResult, Sequence
 
 Translate = Callable[..., str]
 

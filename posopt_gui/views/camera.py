@@ -5,10 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solver.transforms import FloatArray
+
+if TYPE_CHECKING:
+    from posopt_gui.viewmodels.scene_model import CellModel
 
 FIELD_OF_VIEW = 34.0
 """Horizontal angle that the camera sees [deg]."""
@@ -123,6 +127,17 @@ def close_up(tcp: FloatArray, along: FloatArray, field: float) -> Camera:
     elevation = math.degrees(math.asin(direction[2]))
     centre = tcp[:3, 3] - 0.10 * tcp[:3, 2]
     return Camera(centre, CLOSE_DISTANCE, azimuth, elevation, field)
+
+
+def close_up_of(cell: CellModel, joints: FloatArray, *, planned: bool) -> Camera:
+    """The close-up of a pose (6,) [rad]; without a plan of where the path has its middle."""
+    from solver.kinematics.arm import forward  # noqa: PLC0415 - loads the kernels
+
+    tcp = forward(cell.problem.robot, joints, cell.problem.tool.tcp)
+    points = cell.path.points
+    if not planned:
+        tcp[:3, 3] = points[len(points) // 2]
+    return close_up(tcp, points[-1] - points[0], FIELD_OF_VIEW)
 
 
 def picked(

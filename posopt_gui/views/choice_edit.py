@@ -5,14 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QFocusEvent, QKeyEvent, QWheelEvent
+from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QComboBox, QCompleter, QLineEdit, QWidget
+
+from posopt_gui.views.quiet_editors import QuietCombo
+from posopt_gui.views.text_edit import EscapeLeaves
 
 LABEL_LENGTH = 6
 """Least width of the closed list [characters]; it grows with the panel."""
 
 
-class ChoiceEdit(QComboBox):
+class ChoiceEdit(QuietCombo):
     """A list to choose from, and with `searchable` a text that finds in it.
 
     Signals: `chosen(value)` when a person has chosen another value, `focused()`.
@@ -23,7 +26,6 @@ class ChoiceEdit(QComboBox):
 
     def __init__(self, searchable: bool = False, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.setMinimumContentsLength(LABEL_LENGTH)
         self._searchable = searchable
@@ -39,6 +41,8 @@ class ChoiceEdit(QComboBox):
             self.setCompleter(completer)
             self._line().editingFinished.connect(self._take_text)
         self.activated.connect(self._take_index)
+        leaving = EscapeLeaves(self, lambda: self.show_value(self._value))
+        leaving.focused.connect(self.focused)
 
     @property
     def value(self) -> Any:
@@ -75,25 +79,11 @@ class ChoiceEdit(QComboBox):
         self.blockSignals(False)
 
     def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802 - Qt's name
-        """Change only in focus; else the panel scrolls."""
-        if self.hasFocus() and not self._searchable:
-            super().wheelEvent(event)
-        else:
+        """Leave a list that is searched alone; else as any quiet choice."""
+        if self._searchable:
             event.ignore()
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
-        """Escape shows the old value again and leaves."""
-        if event.key() == Qt.Key.Key_Escape:
-            self.show_value(self._value)
-            self.clearFocus()
-            event.accept()
-            return
-        super().keyPressEvent(event)
-
-    def focusInEvent(self, event: QFocusEvent) -> None:  # noqa: N802 - Qt's name
-        """Tell that the field is being edited."""
-        super().focusInEvent(event)
-        self.focused.emit()
+        else:
+            super().wheelEvent(event)
 
     def _line(self) -> QLineEdit:
         line = self.lineEdit()

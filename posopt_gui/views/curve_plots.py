@@ -40,6 +40,24 @@ JOINT_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00
 """J1 to J6 where they share a plot (Okabe and Ito)."""
 
 
+class PlotStock:
+    """Plots that are made before they are needed, one in each turn of the event loop."""
+
+    def __init__(self, theme: Theme) -> None:
+        self._theme = theme
+        self._made: dict[bool, list[WaypointPlot]] = {True: [], False: []}
+
+    def make(self, *, gauged: bool) -> None:
+        """Make one more."""
+        plot = WaypointPlot(gauged=gauged)
+        plot.set_theme(self._theme)
+        self._made[gauged].append(plot)
+
+    def take(self, *, gauged: bool) -> WaypointPlot:
+        """One that was made, or a new one."""
+        return self._made[gauged].pop() if self._made[gauged] else WaypointPlot(gauged=gauged)
+
+
 def line_colour(name: str, theme: Theme) -> str:
     """Colour of a curve by its name."""
     light, dark = {
@@ -74,6 +92,7 @@ class WaypointPlot(pg.PlotWidget):
             plot.getAxis(name).enableAutoSIPrefix(False)
         plot.setContentsMargins(0.0, 0.0, 0.0 if gauged else float(GAUGE), 0.0)
         self.setMinimumHeight(18 if gauged else 110)
+        self._theme: Theme | None = None
         self._curves: dict[str, pg.PlotDataItem] = {}
         self._bars: list[pg.BarGraphItem] = []
         self._borders: list[pg.InfiniteLine] = []
@@ -117,6 +136,9 @@ class WaypointPlot(pg.PlotWidget):
 
     def set_theme(self, theme: Theme) -> None:
         """Set all colours."""
+        if theme is self._theme:
+            return
+        self._theme = theme
         self.setBackground(QColor(theme.plot))
         for name in ("left", "bottom"):
             axis = self.getPlotItem().getAxis(name)
@@ -149,10 +171,20 @@ class WaypointPlot(pg.PlotWidget):
             xMin=0.5 - 0.02 * count, xMax=count + 0.5 + 0.02 * count, minXRange=2.0
         )
 
+    def fit_from_zero(self, curves: Iterable[FloatArray], level: float | None) -> None:
+        """Choose the axis from zero to beyond all curves and a level."""
+        highs = [float(np.max(one[np.isfinite(one)], initial=0.0)) for one in curves]
+        self.setYRange(0.0, 1.15 * max([level or 0.0, *highs, 1e-6]), padding=0.0)
+
     def set_ticks(self, values: Iterable[float]) -> None:
         """Name these values at the left axis, and no others."""
         ticks = [(value, f"{value:g}".replace("-", "−")) for value in values]
         self.getPlotItem().getAxis("left").setTicks([ticks])
+
+    @property
+    def shown_curves(self) -> set[str]:
+        """Names of the curves that are drawn."""
+        return {name for name, curve in self._curves.items() if curve.isVisible()}
 
     @property
     def headroom(self) -> float:
@@ -190,8 +222,10 @@ class WaypointPlot(pg.PlotWidget):
     ) -> None:
         """Draw one line over the waypoints for each name, interrupted between passes."""
         places = list(starts)
-        for name in [one for one in self._curves if one not in curves]:
-            self.removeItem(self._curves.pop(name))
+        # A reference is gone while the next plan is compared: to make its curve anew would take
+        # longer than all else.
+        for name, curve in self._curves.items():
+            curve.setVisible(name in curves)
         for name, values in curves.items():
             many = len(values) > MANY
             curve = self._curves.get(name)
@@ -261,3 +295,14 @@ class WaypointPlot(pg.PlotWidget):
 
     def _put_level_words(self, *_: object) -> None:
         self._level_words.setPos(QPointF(self.getPlotItem().getViewBox().width() - 3.0, 0.0))
+
+
+def step_words(steps: FloatArray) -> str:
+    """How far each joint moves, with the colour of its bar."""
+    if not np.isfinite(steps).all():
+        return "–"
+    parts = (
+        f'<span style="color:{colour}">■</span> J{joint} {value:.2f}°'
+        for joint, (value, colour) in enumerate(zip(steps, JOINT_COLOURS, strict=True), start=1)
+    )
+    return " ".join(parts)

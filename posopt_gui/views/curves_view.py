@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent, QShowEvent
 from PySide6.QtWidgets import (
     QFrame,
@@ -30,16 +32,21 @@ from posopt_gui.viewmodels.curves_model import (
     place_on_path,
     sequence_track,
 )
+from posopt_gui.viewmodels.number_words import decimal
 from posopt_gui.views.change_bars import ChangeBars
 from posopt_gui.views.curve_legend import CurveLegend
-from posopt_gui.views.curve_plots import JOINT_COLOURS, WaypointPlot
+from posopt_gui.views.curve_plots import JOINT_COLOURS, PlotStock, WaypointPlot, step_words
 from posopt_gui.views.feed_plot import FeedPanel
 from posopt_gui.views.limit_gauge import LimitGauge
 from posopt_gui.views.measures_table import MeasuresTable
+from posopt_gui.views.refresh import Refresh
 from solver.units import DEG_PER_RAD, MM_PER_M
 
 ROW = 18
 """Least height of a joint's row [px]."""
+
+GAUGED, PLAIN = 6, 4
+"""Plots with a gauge, of the joints, and without."""
 
 LOW_ROW = 48
 """A lower row keeps no room for its words [px]."""
@@ -64,6 +71,8 @@ class CurvesView(QWidget):
         session: Session,
         comparison: Comparison | None = None,
         parent: QWidget | None = None,
+        *,
+        stock: PlotStock | None = None,
     ) -> None:
         super().__init__(parent)
         self._session = session
@@ -73,15 +82,19 @@ class CurvesView(QWidget):
         self._starts: tuple[int, ...] = ()
         self._opacity = 1.0
         self._count = 0
-        self.joint_plots = tuple(WaypointPlot(gauged=True) for _ in range(6))
-        self.gauges = tuple(LimitGauge() for _ in range(6))
-        self.clearance_plot = WaypointPlot()
-        self.manipulability_plot = WaypointPlot()
-        self.step_plot = WaypointPlot()
-        self.feed = FeedPanel(session)
+        stock = stock or PlotStock(session.look.theme)
+        self.joint_plots = tuple(stock.take(gauged=True) for _ in range(GAUGED))
+        self.gauges = tuple(LimitGauge() for _ in range(GAUGED))
+        self.clearance_plot, self.manipulability_plot, self.step_plot, feed_plot = (
+            stock.take(gauged=False) for _ in range(PLAIN)
+        )
+        self.feed = FeedPanel(session, feed_plot)
         self.bars = ChangeBars()
         self.table = MeasuresTable()
         self.legend = CurveLegend(self._tr)
+        self._drawing = Refresh(session, self._draw, self)
+        self._results = Refresh(session, self._on_result, self)
+        self._checks = Refresh(session, self.feed.update_report, self)
         self._lay_out()
         self._connect()
         self.retheme()
@@ -143,10 +156,10 @@ class CurvesView(QWidget):
             plot.x_range_changed.connect(self._on_x_range)
         self.legend.changed.connect(self._draw)
         self.tabs.currentChanged.connect(self._on_tab)
-        self.comparison.changed.connect(self._draw)
-        session.result_changed.connect(self._on_result)
+        self.comparison.changed.connect(self._drawing.soon)
+        session.result_changed.connect(self._results.soon)
         session.place_changed.connect(self._on_place)
-        session.check_changed.connect(self.feed.update_report)
+        session.check_changed.connect(self._checks.soon)
         session.stale_changed.connect(self._on_stale)
         session.look.language_changed.connect(self.retranslate)
         session.look.theme_changed.connect(self.retheme)
@@ -167,6 +180,12 @@ class CurvesView(QWidget):
             tr("Cumulative change of each joint"),
             tr("Amplitude, standard deviation and gains over the references"),
         )
+        self.tabs.tabBar().setAccessibleName(tr("Curves"))
+        for joint, plot in enumerate(self.joint_plots, start=1):
+            plot.setAccessibleName(f"J{joint}")
+        named = (self.clearance_plot, self.manipulability_plot, self.step_plot, self.feed.plot)
+        for plot, title in zip(named, titles[1:], strict=False):
+            plot.setAccessibleName(title)
         for index, (title, tip) in enumerate(zip(titles, tips, strict=True)):
             self.tabs.setTabText(index, title)
             self.tabs.setTabToolTip(index, tip)
@@ -205,13 +224,13 @@ class CurvesView(QWidget):
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
         """Draw what came while this was hidden."""
         super().showEvent(event)
-        self._draw()
+        self._drawing.soon()
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         """Keep the room for the words when the plots change their height."""
         super().resizeEvent(event)
         self._fit_legend()
-        QTimer.singleShot(0, self, self._draw)
+        self._drawing.soon()
 
     def _fit_legend(self) -> None:
         self.legend.fit(self.width() - self.tabs.tabBar().sizeHint().width() - 8)
@@ -241,7 +260,7 @@ class CurvesView(QWidget):
             self.set_x_range(0.5, count + 0.5)
         self._count = count
         self.feed.update_report()
-        self._draw()
+        self._drawing.soon()
         self._on_stale()
 
     def _on_stale(self, *_: object) -> None:
@@ -330,7 +349,7 @@ class CurvesView(QWidget):
         level = result.problem.settings.safety_distance * MM_PER_M if result else None
         words = self._tr("safety distance {value} mm", value=f"{level or 0.0:.1f}")
         plot.set_level(level, theme.error, words)
-        self._fit_from_zero(plot, curves, level)
+        plot.fit_from_zero(curves.values(), level)
 
     def _draw_manipulability(self) -> None:
         theme, result = self._session.look.theme, self._session.result
@@ -340,7 +359,7 @@ class CurvesView(QWidget):
         level = result.problem.settings.manipulability if result else None
         words = self._tr("least allowed {value} m³", value=f"{level or 0.0:g}")
         plot.set_level(level, theme.error, words)
-        self._fit_from_zero(plot, curves, level)
+        plot.fit_from_zero(curves.values(), level)
 
     def _draw_steps(self) -> None:
         theme, plot = self._session.look.theme, self.step_plot
@@ -351,16 +370,8 @@ class CurvesView(QWidget):
         highs = [np.nanmax(one.steps.sum(axis=1), initial=0.1) for one in tracks if len(one.steps)]
         plot.setYRange(0.0, 1.25 * max(map(float, highs), default=1.0), padding=0.0)
 
-    @staticmethod
-    def _fit_from_zero(
-        plot: WaypointPlot, curves: dict[str, np.ndarray], level: float | None
-    ) -> None:
-        highs = [
-            float(np.max(values[np.isfinite(values)], initial=0.0)) for values in curves.values()
-        ]
-        plot.setYRange(0.0, 1.15 * max([level or 0.0, *highs, 1e-6]), padding=0.0)
-
     def _on_place(self, place: float) -> None:
+        """Follow the place; words that are hidden do so when their tab is opened."""
         for plot in self.plots:
             plot.set_place(place)
         self.feed.show_readout(self._session.cursor)
@@ -369,25 +380,19 @@ class CurvesView(QWidget):
             for plot in self.plots:
                 plot.set_readout("")
             return
-        at, tr = self._session.cursor, self._tr
-        limits = result.problem.joint_limits * DEG_PER_RAD
-        for joint, plot in enumerate(self.joint_plots):
+        at = self._session.cursor
+        if self.tabs.currentWidget() is self._scroll:
+            self._show_joints(plan, at, result.problem.joint_limits * DEG_PER_RAD)
+            return
+        number = self._tr("waypoint {number}", number=at + 1)
+        clearance = decimal(math.floor(float(plan.clearance[at]) * 10.0 + 1e-7) / 10.0, 1)
+        self.clearance_plot.set_readout(f"{number} · {clearance} mm")
+        self.manipulability_plot.set_readout(f"{number} · {plan.manipulability[at]:.4f} m³")
+        self.step_plot.set_readout(f"{number} · {step_words(plan.steps[at])}")
+
+    def _show_joints(self, plan: Track, at: int, limits: np.ndarray) -> None:
+        for joint, (plot, gauge) in enumerate(zip(self.joint_plots, self.gauges, strict=True)):
             value = float(plan.joints[at, joint])
             plot.set_readout(joint_words(joint + 1, value))
-            self.gauges[joint].setToolTip(limit_words(tr, joint + 1, value, limits[joint]))
-            self.gauges[joint].set_value(plan.joints[at, joint])
-        number = tr("waypoint {number}", number=at + 1)
-        clearance = np.floor(plan.clearance[at] * 10.0 + 1e-7) / 10.0
-        self.clearance_plot.set_readout(f"{number} · {clearance:.1f} mm")
-        self.manipulability_plot.set_readout(f"{number} · {plan.manipulability[at]:.4f} m³")
-        self.step_plot.set_readout(f"{number} · {_step_words(plan.steps[at])}")
-
-
-def _step_words(steps: np.ndarray) -> str:
-    if not np.isfinite(steps).all():
-        return "–"
-    parts = (
-        f'<span style="color:{colour}">■</span> J{joint} {value:.2f}°'
-        for joint, (value, colour) in enumerate(zip(steps, JOINT_COLOURS, strict=True), start=1)
-    )
-    return " ".join(parts)
+            gauge.setToolTip(limit_words(self._tr, joint + 1, value, limits[joint]))
+            gauge.set_value(plan.joints[at, joint])

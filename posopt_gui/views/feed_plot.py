@@ -16,13 +16,15 @@ from posopt_gui.views.curve_plots import WaypointPlot
 class FeedPanel(QStackedWidget):
     """The plot, or a sentence that says what is missing."""
 
-    def __init__(self, session: Session, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, session: Session, plot: WaypointPlot | None = None, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self._session = session
         self._tr = session.look.tr
         self._curve: FeedCurve | None = None
         self._items: list[pg.GraphicsObject] = []
-        self.plot = WaypointPlot()
+        self.plot = plot or WaypointPlot()
         self._sentence = QLabel()
         self._sentence.setWordWrap(True)
         self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)

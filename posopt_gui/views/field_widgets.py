@@ -6,11 +6,10 @@ from collections.abc import Callable
 from typing import Any
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QAction, QFocusEvent, QKeyEvent
+from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (
     QGridLayout,
     QLabel,
-    QLineEdit,
     QSizePolicy,
     QToolButton,
     QVBoxLayout,
@@ -18,53 +17,16 @@ from PySide6.QtWidgets import (
 )
 
 from posopt_gui.viewmodels.form_types import Field, Kind, Note, range_of
+from posopt_gui.viewmodels.number_words import in_figures, with_unit
 from posopt_gui.views.choice_edit import ChoiceEdit
 from posopt_gui.views.flag_edit import FlagEdit
 from posopt_gui.views.number_edit import NumberEdit
+from posopt_gui.views.text_edit import TextEdit
 
 Translate = Callable[..., str]
 
 LABEL_WIDTH = 108
 """Width of the labels, so that the editors of a section stand under each other [px]."""
-
-
-class TextEdit(QLineEdit):
-    """A text: Enter or leaving applies, Escape shows the old one again."""
-
-    entered = Signal(str)
-    focused = Signal()
-
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self._text = ""
-        self.editingFinished.connect(self._commit)
-
-    def show_text(self, text: str) -> None:
-        """Show a text without saying that it was entered."""
-        self._text = text
-        if self.text() != text:
-            self.setText(text)
-            self.setCursorPosition(0)
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
-        """Escape leaves."""
-        if event.key() == Qt.Key.Key_Escape:
-            self.setText(self._text)
-            self.clearFocus()
-            event.accept()
-            return
-        super().keyPressEvent(event)
-
-    def focusInEvent(self, event: QFocusEvent) -> None:  # noqa: N802 - Qt's name
-        """Tell that the field is being edited."""
-        super().focusInEvent(event)
-        self.focused.emit()
-
-    def _commit(self) -> None:
-        text = self.text().strip()
-        if text != self._text:
-            self._text = text
-            self.entered.emit(text)
 
 
 def note_text(translate: Translate, note: Note) -> str:
@@ -75,10 +37,11 @@ def note_text(translate: Translate, note: Note) -> str:
 class FieldRow(QWidget):
     """Label, editor and sentence of one field.
 
-    Signals: `edited(value)` when a person has changed the value, `focused()`.
+    Signals: `edited(value)` when a person has changed the value, `focused()`, `file_wanted()`.
     """
 
     edited = Signal(object)
+    file_wanted = Signal()
     focused = Signal()
 
     def __init__(self, field: Field, translate: Translate, parent: QWidget | None = None) -> None:
@@ -130,8 +93,10 @@ class FieldRow(QWidget):
     def retranslate(self) -> None:
         """Set every text again."""
         field = self.field
-        unit = f" [{field.unit}]" if field.unit and field.kind is Kind.NUMBERS else ""
-        text = self._tr(field.label) + unit
+        unit = with_unit("", field.unit).strip()
+        text = self._tr(field.label)
+        if unit and field.kind is Kind.NUMBERS:
+            text += f" [{unit}]"
         if field.kind is Kind.FLAG:
             self._check.setText(text)
         else:
@@ -145,6 +110,9 @@ class FieldRow(QWidget):
         for number, editor in enumerate(self.editors):
             part = f", {self._tr(field.parts[number])}" if number < len(field.parts) else ""
             editor.setAccessibleName(name + part)
+        if field.kind is Kind.FILE:
+            self._browse.setToolTip(self._tr("Choose a file"))
+            self._browse.setAccessibleName(f"{text}: {self._tr('Choose a file')}")
         self._set_forms()
         self._show()
 
@@ -166,11 +134,12 @@ class FieldRow(QWidget):
         elif field.kind is Kind.CHOICE:
             shown = next((self._choice(one)[1] for one in field.choices if one.value == value), "")
         elif isinstance(value, list):
-            shown = ", ".join(f"{one:g}" if isinstance(one, int | float) else one for one in value)
+            numbers = (one for one in value if isinstance(one, int | float))
+            shown = ", ".join(map(in_figures, numbers))
         else:
-            shown = f"{value:.10g}" if isinstance(value, float) else str(value)
-        unit = f" {field.unit}" if field.unit else ""
-        return self._tr("Default: {value}", value=shown + unit) if shown else ""
+            shown = in_figures(value) if isinstance(value, float) else str(value)
+        shown = with_unit(shown, field.unit) if shown else ""
+        return self._tr("Default: {value}", value=shown) if shown else ""
 
     def tip(self) -> str:
         """What the field says, its range and its default."""
@@ -208,6 +177,7 @@ class FieldRow(QWidget):
             Kind.FLAG: self._build_flag,
             Kind.TEXT: self._build_text,
             Kind.WORDS: self._build_text,
+            Kind.FILE: self._build_file,
             Kind.SUBSET: self._build_subset,
         }
         builders[self.field.kind]()
@@ -265,6 +235,16 @@ class FieldRow(QWidget):
         editor.focused.connect(self.focused)
         self._beside(editor)
 
+    def _build_file(self) -> None:
+        self._build_text()
+        self._browse = QToolButton(self)
+        self._browse.setObjectName("browse")
+        self._browse.setText("…")
+        self._browse.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self._browse.clicked.connect(self.file_wanted)
+        self._grid.addWidget(self._browse, 0, 2)
+        self.editors.append(self._browse)
+
     def _build_subset(self) -> None:
         self._label.setMinimumWidth(0)
         self._label.setMaximumWidth(16_777_215)
@@ -302,7 +282,7 @@ class FieldRow(QWidget):
                     named = field.count > 2 or field.parts[0] != "from"
                     editor.setPrefix(f"{part} " if named else "")
                 elif field.unit:
-                    editor.setSuffix(f" {field.unit}")
+                    editor.setSuffix(with_unit("", field.unit))
 
     def _show(self) -> None:
         field, value = self.field, self._value

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any, Final
 
@@ -61,10 +62,27 @@ class GuidePage(QTextBrowser):
     def _follow(self, link: QUrl) -> None:
         """Other pages open here; what is no page, and what is elsewhere, in its own program."""
         url = self.source().resolved(link)
-        if url.isLocalFile() and url.path().endswith(".md"):
-            self.setSource(url)
-        else:
+        if not url.isLocalFile():
             QDesktopServices.openUrl(url)
+        elif url.path().endswith(".md") and Path(url.toLocalFile()).is_file():
+            self.setSource(url)
+            self.show_heading(url.fragment())
+        elif Path(url.toLocalFile()).is_file():
+            QDesktopServices.openUrl(url)
+
+    def show_heading(self, anchor: str) -> None:
+        """Scroll to the heading that a link names as its words in lower case with hyphens."""
+        block = self.document().begin()
+        while anchor and block.isValid():
+            if block.blockFormat().headingLevel() and _anchor_of(block.text()) == anchor:
+                top = self.document().documentLayout().blockBoundingRect(block).top()
+                self.verticalScrollBar().setValue(int(top))
+                return
+            block = block.next()
+
+
+def _anchor_of(heading: str) -> str:
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
 class GuideWindow(QWidget):

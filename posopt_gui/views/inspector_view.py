@@ -25,6 +25,7 @@ from posopt_gui.viewmodels.results_model import check_words, totals
 from posopt_gui.viewmodels.trouble_model import Trouble, trouble_of
 from posopt_gui.views.joint_bars import JointBars
 from posopt_gui.views.label_grid import LabelGrid, Text
+from posopt_gui.views.refresh import Refresh
 from solver.candidates.outcomes import Outcome
 
 LEAST_WIDTH = 290
@@ -107,9 +108,10 @@ class InspectorView(QScrollArea):
             session.cursor_changed, session.hover_changed, self._explainer.explained,
         ):  # fmt: skip
             signal.connect(self._show_pose)
+        everything = Refresh(session, self._show_all, self)
         for signal in (session.result_changed, session.problem_changed, session.stale_changed):
-            signal.connect(self._show_all)
-        session.check_changed.connect(self._show_gate)
+            signal.connect(everything.soon)
+        session.check_changed.connect(Refresh(session, self._show_gate, self).soon)
         self.gate.link_activated.connect(self._on_link)
         self.totals.link_activated.connect(self._on_link)
         session.look.language_changed.connect(self.retranslate)
@@ -150,7 +152,13 @@ class InspectorView(QScrollArea):
 
     def _show_trouble(self) -> None:
         session = self._session
-        found = trouble_of(session.problem_error, session.plan_error, session.answer, self._tr)
+        found = trouble_of(
+            session.problem_error,
+            session.plan_error,
+            session.answer,
+            self._tr,
+            session.document.state.cell,
+        )
         self.trouble.setVisible(found is not None)
         if found is not None:
             self.trouble.setText(self._trouble_html(found))

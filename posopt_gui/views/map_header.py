@@ -13,7 +13,7 @@ from posopt_gui.viewmodels.map_colours import LAYER_CHOICES, LAYER_LABELS, Layer
 from posopt_gui.viewmodels.map_lines import CONSTANT, LINE_NAMES
 from posopt_gui.viewmodels.map_model import BEST_OF_ALL, Choice, MapModel, Page
 from posopt_gui.viewmodels.map_readings import degrees
-from posopt_gui.views.map_widgets import QuietCombo
+from posopt_gui.views.quiet_editors import QuietCombo
 from solver.model.settings import Scheme
 
 COMPARABLE = (Scheme.EXACT.value, Scheme.F.value, Scheme.F1.value, Scheme.F2.value, CONSTANT)

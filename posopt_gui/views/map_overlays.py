@@ -94,8 +94,8 @@ class Overlays:
         session, tr = self._session, self._tr
         self._canvas.dim(session.stale)
         self._canvas.draggable = not session.stale and session.result is not None
-        input_error = session.problem_error if session.result is None else None
-        trouble = trouble_of(input_error, session.plan_error, session.answer, tr)
+        cell = session.document.state.cell
+        trouble = trouble_of(session.problem_error, session.plan_error, session.answer, tr, cell)
         if trouble is not None:
             # Why a plan failed is long, and the inspector tells it in full.
             causes = () if session.plan_error is not None else trouble.causes[:1]

@@ -281,6 +281,7 @@ class MapView(QWidget):
     def _on_problem(self) -> None:
         if self._session.result is None and self._shown.model is None:
             self._ask_candidates()
+        self.overlays.show_state()
 
     def _show_page(self) -> None:
         """Show what the header says."""

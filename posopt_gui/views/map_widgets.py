@@ -18,9 +18,8 @@ from PySide6.QtGui import (
     QPaintEvent,
     QPen,
     QResizeEvent,
-    QWheelEvent,
 )
-from PySide6.QtWidgets import QComboBox, QFrame, QLabel, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from posopt_gui.theme import Theme
 from posopt_gui.viewmodels.map_colours import FIRST_INDEX, ByteArray, Scale
@@ -165,22 +164,6 @@ class LegendStrip(QWidget):
             x = box.left() + share * box.width()
             painter.setPen(QPen(self._text, 2.0))
             painter.drawLine(QPointF(x, box.top() - 2.0), QPointF(x, box.bottom() + 4.0))
-
-
-class QuietCombo(QComboBox):
-    """A choice that the wheel turns only once it has the focus."""
-
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
-
-    def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802 - Qt's name
-        """Leave the wheel to what lies behind, without the focus."""
-        if self.hasFocus():
-            super().wheelEvent(event)
-        else:
-            event.ignore()
 
 
 class HoverCard(QFrame):

@@ -64,11 +64,14 @@ class NumberEdit(QDoubleSpinBox):
 
     def show_number(self, number: float | None) -> None:
         """Show a number without saying that it was entered."""
+        other = number != self._number
         self._number = number
         self.blockSignals(True)
         self.setValue(ABSENT if number is None else number)
         if self.lineEdit().text() != self._text(number):
             self.lineEdit().setText(self._text(number))
+        if other:
+            self.lineEdit().deselect()
         self.blockSignals(False)
 
     def textFromValue(self, value: float) -> str:  # noqa: N802 - Qt's name

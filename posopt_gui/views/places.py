@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Final
 
 from PySide6.QtCore import QByteArray, QSettings, Qt
@@ -37,6 +37,9 @@ class Places:
         self._middle = QSplitter(Qt.Orientation.Vertical)
         self._middle.setObjectName("middle")
         self._middle.setChildrenCollapsible(False)
+        for share, factor in enumerate(SHARES):
+            self._middle.addWidget(QWidget())
+            self._middle.setStretchFactor(share, factor)
         window.setCentralWidget(self._middle)
         options = QMainWindow.DockOption
         window.setDockOptions(options.AnimatedDocks | options.AllowTabbedDocks)
@@ -60,13 +63,23 @@ class Places:
         """Opening and closing of each panel, for the menu."""
         return [dock.toggleViewAction() for dock in self.docks.values()]
 
-    def fill(self, panels: dict[str, QWidget], middle: Sequence[QWidget]) -> None:
-        """Put the panels into their places, and all as they were left the last time."""
-        for name, panel in panels.items():
-            self.docks[name].setWidget(panel)
-        for number, view in enumerate(middle):
-            self._middle.addWidget(view)
-            self._middle.setStretchFactor(number, SHARES[number])
+    def put(self, name: str, panel: QWidget) -> None:
+        """Put a panel into its dock."""
+        empty = self.docks[name].widget()
+        self.docks[name].setWidget(panel)
+        if empty is not None:
+            empty.deleteLater()
+
+    def put_middle(self, number: int, view: QWidget) -> None:
+        """Put a view into the middle: 3D view, map or tabs."""
+        empty = self._middle.replaceWidget(number, view)
+        if empty is not None:
+            empty.deleteLater()
+        self._middle.setStretchFactor(number, SHARES[number])
+        view.show()
+
+    def settle(self) -> None:
+        """Put all, once they are filled, as they were left the last time."""
         self.share_width()
         self.share_height()
         self._restore()

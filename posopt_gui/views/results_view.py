@@ -25,8 +25,9 @@ from posopt_gui.controllers.comparison import Comparison
 from posopt_gui.controllers.pose_facts import NearestBodies
 from posopt_gui.controllers.session import Message, Session
 from posopt_gui.viewmodels.results_model import Note, candidate_counts, notes, scheme_table, totals
-from posopt_gui.viewmodels.trouble_model import trouble_of
+from posopt_gui.viewmodels.trouble_model import plan_words, trouble_of
 from posopt_gui.viewmodels.waypoint_table import WaypointTable
+from posopt_gui.views.refresh import Refresh
 from posopt_gui.views.result_tables import copy_selection, pad_cells, sign_icon, tabular
 from posopt_gui.views.totals_strip import TotalsStrip
 from posopt_gui.views.waypoint_model import SORT_ROLE, WaypointModel
@@ -121,9 +122,9 @@ class ResultsView(QWidget):
         self.tabs.currentChanged.connect(self._on_tab)
         self._nearest.changed.connect(self._show_waypoints)
         self.comparison.changed.connect(self._show_schemes)
-        session.result_changed.connect(self._on_result)
+        session.result_changed.connect(Refresh(session, self._on_result, self).soon)
         session.problem_changed.connect(self._show_messages)
-        session.check_changed.connect(self._on_check)
+        session.check_changed.connect(Refresh(session, self._on_check, self).soon)
         session.message.connect(self._on_said)
         session.stale_changed.connect(self._on_stale)
         session.look.language_changed.connect(self.retranslate)
@@ -132,6 +133,7 @@ class ResultsView(QWidget):
     def retranslate(self) -> None:
         """Set all texts again."""
         tr = self._tr
+        self.tabs.tabBar().setAccessibleName(tr("Results"))
         self.tabs.setTabText(0, tr("Waypoints"))
         self.tabs.setTabText(1, tr("Schemes"))
         self._copy.setText(tr("Copy table"))
@@ -243,7 +245,13 @@ class ResultsView(QWidget):
 
     def _show_messages(self) -> None:
         session = self._session
-        trouble = trouble_of(session.problem_error, session.plan_error, session.answer, self._tr)
+        trouble = trouble_of(
+            session.problem_error,
+            session.plan_error,
+            session.answer,
+            self._tr,
+            session.document.state.cell,
+        )
         found = notes(session.result, session.sequence, session.report, trouble, self._tr)
         derived = {one.text for one in found}
         said = [one for one in self._said if one.text not in derived and not self._is_plan(one)]
@@ -268,7 +276,7 @@ class ResultsView(QWidget):
     def _is_plan(self, note: Note) -> bool:
         """Whether a message repeats the plan's own error, which the notes say in full."""
         error = self._session.plan_error
-        return error is not None and note.text == str(error)
+        return error is not None and note.text == plan_words(error, self._tr)
 
     def _on_row(self, index: QModelIndex) -> None:
         self._session.set_cursor(self.sorted.mapToSource(index).row())

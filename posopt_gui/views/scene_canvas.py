@@ -9,7 +9,7 @@ import pyqtgraph as pg
 import pyqtgraph.opengl as gl
 from OpenGL import GL
 from PySide6.QtCore import QPointF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFont, QKeyEvent, QMouseEvent, QWheelEvent
+from PySide6.QtGui import QColor, QFont, QMouseEvent, QPainter, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from posopt_gui.theme import Theme
@@ -23,6 +23,7 @@ from posopt_gui.viewmodels.scene_model import (
 from posopt_gui.viewmodels.scene_probe import ContactPatch, PoseReport, Touch
 from posopt_gui.viewmodels.surface_mesh import ShadedMesh
 from posopt_gui.views.camera import FIELD_OF_VIEW, Camera, picked
+from posopt_gui.views.gl_picture import GlPicture
 from posopt_gui.views.opengl import surface_format
 from posopt_gui.views.scene_items import (
     AXIS_COLOURS,
@@ -62,15 +63,13 @@ CLICK_SLACK = 4.0
 """How far the mouse may move between press and release of a click [pixels]."""
 
 
-class SceneCanvas(gl.GLViewWidget):
+class SceneCanvas(GlPicture):
     """Draws what it is told; emits which waypoint was clicked."""
 
     waypoint_clicked = Signal(int)
-    failed = Signal(str)
 
     def __init__(self, theme: Theme, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self.setFormat(surface_format())
+        super().__init__(surface_format(), parent)
         self.setMinimumSize(320, 220)
         self.opts["fov"] = FIELD_OF_VIEW
         self._theme = theme
@@ -385,23 +384,14 @@ class SceneCanvas(gl.GLViewWidget):
         self.update()
         event.accept()
 
-    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
-        """Leave all keys to the window: arrows step through the waypoints."""
-        event.ignore()
-
-    def keyReleaseEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
-        """Leave all keys to the window."""
-        event.ignore()
-
-    def initializeGL(self) -> None:  # noqa: N802 - Qt's name
-        """Tell, rather than stop the program, where OpenGL is too old."""
-        try:
-            super().initializeGL()
-        except RuntimeError as error:
-            self.failed.emit(str(error))
-
     def paintGL(self) -> None:  # noqa: N802 - Qt's name
         """Draw; depths and colours must be writable for the screen to be cleared."""
         GL.glDepthMask(True)
         GL.glColorMask(True, True, True, True)
         super().paintGL()
+
+    def draw_over(self, painter: QPainter) -> None:
+        """Labels lie over everything else."""
+        for label in (self._distance, *self._names):
+            if label.visible():
+                label.draw(painter)

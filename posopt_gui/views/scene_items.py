@@ -212,16 +212,17 @@ class LabelItem(gl.GLTextItem):
         self.setDepthValue(LABEL_DEPTH)
 
     def paint(self) -> None:
+        """Nothing: a label is painted over the finished picture."""
+
+    def draw(self, painter: QPainter) -> None:
         """Draw the plate and the text over everything else."""
         if not self.text:
             return
-        self.setupGLState()
         place = self.compute_projection().map(QVector3D(*(float(x) for x in self.pos)))
         metrics = QFontMetricsF(self.font)
         width, height = metrics.horizontalAdvance(self.text), metrics.height()
         corner = place.toPointF() + self.shift - QPointF(0.0, height)
         box = QRectF(corner.x(), corner.y(), width + 12.0, height + 4.0)
-        painter = QPainter(self.view())
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(self.border)
         painter.setBrush(self.plate)
@@ -229,7 +230,6 @@ class LabelItem(gl.GLTextItem):
         painter.setPen(self.color)
         painter.setFont(self.font)
         painter.drawText(box, Qt.AlignmentFlag.AlignCenter, self.text)
-        painter.end()
 
 
 def unit_disc() -> ShadedMesh:

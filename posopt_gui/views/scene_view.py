@@ -9,13 +9,15 @@ from PySide6.QtCore import QPointF, Qt, QThreadPool, QTimer
 from PySide6.QtGui import QHideEvent, QImage, QPainter, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QFileDialog, QLabel, QStackedLayout, QWidget
 
-from posopt_gui.controllers.session import Hover, Message, Session
+from posopt_gui.controllers.session import Message, Session
+from posopt_gui.viewmodels.error_words import error_words
 from posopt_gui.viewmodels.scene_jobs import build_cell, build_probe
-from posopt_gui.views.camera import CLOSE_UP, FIELD_OF_VIEW, PRESETS, Camera, close_up, fitted
+from posopt_gui.views.camera import CLOSE_UP, FIELD_OF_VIEW, PRESETS, Camera, close_up_of, fitted
 from posopt_gui.views.opengl import is_available
+from posopt_gui.views.refresh import Refresh
+from posopt_gui.views.scene_ghost import SceneGhost
 from posopt_gui.views.scene_tools import SceneTools
 from posopt_gui.workers.jobs import JobLine
-from solver.candidates.outcomes import Outcome
 from solver.errors import PosoptError
 from solver.transforms import FloatArray
 
@@ -29,7 +31,6 @@ NO_OPENGL = (
     "The cell cannot be shown in 3D, because OpenGL is not available here; everything else works."
 )
 LOADING = "The cell is being drawn."
-GHOST_OPACITY = 0.42
 
 
 class SceneView(QWidget):
@@ -74,26 +75,18 @@ class SceneView(QWidget):
         self.retranslate()
 
     def _prepare(self) -> None:
-        """Make the window one that OpenGL can draw in, before it is on screen.
-
-        A window that gets its first OpenGL widget later is made anew, and flickers.
-        """
+        """Say at once where there is no OpenGL."""
         if not is_available():
             self._fail("no context")
-            return
-        from PySide6.QtOpenGLWidgets import QOpenGLWidget  # noqa: PLC0415 - not without OpenGL
-
-        first = QOpenGLWidget(self)
-        first.setFixedSize(1, 1)
-        first.hide()
 
     def _connect(self) -> None:
         session, tools = self.session, self._tools
         session.problem_changed.connect(self._on_problem)
-        session.result_changed.connect(self._on_result)
-        session.stale_changed.connect(self._on_result)
+        results = Refresh(session, self._on_result, self)
+        session.result_changed.connect(results.soon)
+        session.stale_changed.connect(results.soon)
         session.place_changed.connect(self._on_place)
-        session.hover_changed.connect(self._on_hover)
+        self._ghost = SceneGhost(session, self)
         session.look.language_changed.connect(self.retranslate)
         session.look.theme_changed.connect(self.retheme)
         tools.preset_chosen.connect(self.look_from)
@@ -150,6 +143,7 @@ class SceneView(QWidget):
     def grab_image(self) -> QImage:
         """What is seen, with its notes."""
         canvas = self._canvas
+        self._ghost.catch_up()
         image = canvas.grabFramebuffer() if canvas is not None and canvas.isValid() else QImage()
         if image.isNull():
             return self.grab().toImage()
@@ -175,7 +169,8 @@ class SceneView(QWidget):
         if canvas is None or cell is None:
             return
         if preset == CLOSE_UP:
-            canvas.set_camera(self._close_up(cell))
+            planned = self._sequence() is not None
+            canvas.set_camera(close_up_of(cell, self._joints(cell), planned=planned))
             return
         azimuth, elevation = PRESETS[preset]
         self._fit(azimuth, elevation)
@@ -194,16 +189,6 @@ class SceneView(QWidget):
             camera = fitted(corners, azimuth, elevation, canvas.aspect, FIELD_OF_VIEW, above)
             canvas.set_camera(camera)
             self._fitted_camera = canvas.camera
-
-    def _close_up(self, cell: CellModel) -> Camera:
-        from solver.kinematics.arm import forward  # noqa: PLC0415 - loads the kernels
-
-        problem = cell.problem
-        tcp = forward(problem.robot, self._joints(cell), problem.tool.tcp)
-        points = cell.path.points
-        if self._sequence() is None:
-            tcp[:3, 3] = points[len(points) // 2]
-        return close_up(tcp, points[-1] - points[0], FIELD_OF_VIEW)
 
     # ---- the canvas
 
@@ -295,7 +280,7 @@ class SceneView(QWidget):
 
     def _build_failed(self, error: object) -> None:
         if isinstance(error, PosoptError):
-            self.session.say(Message("warning", str(error)))
+            self.session.say(Message("warning", error_words(error, self.session.look.tr)))
         else:
             words = "The cell cannot be drawn: {reason}"
             text = f"{type(error).__name__}: {error}"
@@ -355,25 +340,6 @@ class SceneView(QWidget):
             required = cell.problem.settings.safety_distance
             canvas.show_report(self._report, required=required)
         self._show_note()
-
-    def _on_hover(self, hover: Hover | None) -> None:
-        canvas, result = self._canvas, self.session.result
-        if canvas is None:
-            return
-        if hover is None or result is None:
-            canvas.show_ghost(None)
-            return
-        from posopt_gui.viewmodels.scene_model import ghost_at  # noqa: PLC0415
-        from posopt_gui.views.scene_items import rgba  # noqa: PLC0415
-
-        ghost = ghost_at(result, hover.waypoint, hover.orientation, hover.branch)
-        if ghost is None:
-            canvas.show_ghost(None)
-            return
-        theme = self.session.look.theme
-        feasible = ghost.outcome is Outcome.FEASIBLE
-        colour = theme.accent if feasible else theme.outcome(ghost.outcome)
-        canvas.show_ghost(ghost.joints, rgba(colour, GHOST_OPACITY))
 
     def _on_shown(self) -> None:
         if self._canvas is not None:

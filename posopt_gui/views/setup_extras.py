@@ -9,6 +9,7 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QListWidget,
+    QMenu,
     QPushButton,
     QVBoxLayout,
     QWidget,
@@ -16,6 +17,8 @@ from PySide6.QtWidgets import (
 
 from posopt_gui.viewmodels.path_preview import SUFFIXES
 from posopt_gui.views.field_widgets import Translate
+from posopt_gui.views.setup_fixtures import MESH
+from solver.catalog.bodies import SHAPES
 
 LIST_ROWS = 4
 """Fixtures that are seen without scrolling."""
@@ -127,11 +130,11 @@ class PathFileBox(QFrame):
 class FixtureList(QWidget):
     """The fixtures, one of them chosen, with buttons to add and remove.
 
-    Signals: `chosen(index)`, `add_wanted()`, `remove_wanted(index)`.
+    Signals: `chosen(index)`, `add_wanted(shape)`, `remove_wanted(index)`.
     """
 
     chosen = Signal(int)
-    add_wanted = Signal()
+    add_wanted = Signal(str)
     remove_wanted = Signal(int)
 
     def __init__(self, translate: Translate, parent: QWidget | None = None) -> None:
@@ -140,7 +143,12 @@ class FixtureList(QWidget):
         self.list = QListWidget(self)
         self.list.currentRowChanged.connect(self._on_row)
         self.add_button = QPushButton(self)
-        self.add_button.clicked.connect(self.add_wanted)
+        menu = QMenu(self.add_button)
+        for shape in (*SHAPES, MESH):
+            action = menu.addAction("")
+            action.setData(shape)
+        menu.triggered.connect(lambda action: self.add_wanted.emit(action.data()))
+        self.add_button.setMenu(menu)
         self.remove_button = QPushButton(self)
         self.remove_button.clicked.connect(lambda: self.remove_wanted.emit(self.list.currentRow()))
         buttons = QHBoxLayout()
@@ -170,8 +178,12 @@ class FixtureList(QWidget):
         """Set every text again."""
         tr = self._tr
         self.list.setAccessibleName(tr("Fixtures"))
-        self.add_button.setText(tr("Add box"))
-        self.add_button.setToolTip(tr("Add a box that stands still: a trestle, a wall, a fence."))
+        self.add_button.setText(tr("Add"))
+        self.add_button.setToolTip(tr("Add what stands still: a trestle, a wall, a fence."))
+        for action in self.add_button.menu().actions():
+            shape = action.data()
+            words = "a mesh from a file…" if shape == MESH else shape
+            action.setText(tr(words))
         self.remove_button.setText(tr("Remove"))
         self.remove_button.setToolTip(tr("Remove the chosen fixture."))
 

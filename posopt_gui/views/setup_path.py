@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 
 from posopt_gui.controllers.path_loader import PathLoader
 from posopt_gui.controllers.session import Session
+from posopt_gui.viewmodels.error_words import error_words
 from posopt_gui.viewmodels.form_types import at
 from posopt_gui.viewmodels.path_preview import SUFFIXES, PathPreview
 from solver.io.importers import Source
@@ -57,7 +58,9 @@ class SetupPath(QObject):
             self.loader.examine(Source(name, data), path=at(state.cell, "path", {}))
 
     def _on_examined(self, preview: PathPreview) -> None:
-        self.refused.emit(preview.sentence)
+        error = preview.error
+        tr = self._session.look.tr
+        self.refused.emit(error_words(error, tr) if error is not None else "")
         if self._asked or preview.askable:
             self.questions.emit(preview)
         elif preview.error is None:

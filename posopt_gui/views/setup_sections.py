@@ -75,10 +75,11 @@ class _Header(QFrame):
 class SectionBox(QWidget):
     """A section: header, rows, notes, and an extra widget at its place among them.
 
-    Signals: `edited(field, value)`, `focused(row)`, `toggled(opened)`.
+    Signals: `edited(field, value)`, `focused(row)`, `toggled(opened)`, `file_wanted(key)`.
     """
 
     edited = Signal(object, object)
+    file_wanted = Signal(str)
     focused = Signal(object)
     toggled = Signal(bool)
 
@@ -174,7 +175,8 @@ class SectionBox(QWidget):
         self._header.button.setFocus(Qt.FocusReason.OtherFocusReason)
 
     def _show_header(self) -> None:
-        summary = self._section.summary
+        section = self._section
+        summary = self._tr(section.summary) if section.said else section.summary
         self._header.show_state(self._tr(self._section.title), summary, self._open)
 
     def _arrange(self) -> None:
@@ -219,6 +221,7 @@ class SectionBox(QWidget):
             row = FieldRow(field, self._tr, self._body)
             row.edited.connect(lambda value, row=row: self._on_edited(row, value))
             row.focused.connect(lambda row=row: self.focused.emit(row))
+            row.file_wanted.connect(lambda row=row: self.file_wanted.emit(row.field.key))
             self.rows[key] = row
         elif row.field != field:
             row.set_field(field)

@@ -28,30 +28,19 @@ QComboBox QLineEdit, QAbstractSpinBox QLineEdit {{ border: none; padding: 0; }}
 QLineEdit[wrong="true"], QAbstractSpinBox[wrong="true"], QComboBox[wrong="true"] {{
     border: 1px solid {theme.error}; }}
 QCheckBox[wrong="true"] {{ color: {theme.error}; }}
-QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ border: none; width: 15px;
-    background: transparent; }}
 QAbstractSpinBox[slim="true"]::up-button, QAbstractSpinBox[slim="true"]::down-button {{
     width: 0; }}
 QAbstractSpinBox[slim="true"]::up-arrow, QAbstractSpinBox[slim="true"]::down-arrow {{
     border: none; }}
-QAbstractSpinBox::up-arrow, QAbstractSpinBox::down-arrow, QComboBox::down-arrow {{
-    image: none; width: 0; height: 0; border-left: 4px solid {theme.surface};
-    border-right: 4px solid {theme.surface}; }}
-QAbstractSpinBox::up-arrow {{ border-bottom: 5px solid {theme.muted}; }}
-QAbstractSpinBox::down-arrow, QComboBox::down-arrow {{ border-top: 5px solid {theme.muted}; }}
-QAbstractSpinBox::up-arrow:off, QAbstractSpinBox::up-arrow:disabled {{
-    border-bottom-color: {theme.border}; }}
-QAbstractSpinBox::down-arrow:off, QAbstractSpinBox::down-arrow:disabled {{
-    border-top-color: {theme.border}; }}
-QComboBox::drop-down {{ border: none; width: 18px; }}
-QComboBox QAbstractItemView {{ background: {theme.surface};
-    selection-background-color: {theme.selection}; selection-color: {theme.text}; }}
 QToolButton#subset {{ color: {theme.muted}; background: {theme.surface};
     border: 1px solid {theme.border}; border-radius: 3px; padding: 3px 2px; }}
 QToolButton#subset:checked {{ color: {theme.text}; background: {theme.selection};
     border-color: {theme.accent}; }}
 QToolButton#subset:hover {{ border-color: {theme.accent}; }}
 QToolButton#subset:focus {{ border: 1px solid {theme.text}; }}
+QToolButton#browse {{ color: {theme.text}; background: {theme.raised};
+    border: 1px solid {theme.border}; border-radius: 3px; padding: 1px 6px; min-height: 18px; }}
+QToolButton#browse:hover, QToolButton#browse:focus {{ border-color: {theme.accent}; }}
 QPushButton {{ padding: 4px 10px; }}
 QPushButton:focus {{ border-color: {theme.accent}; }}
 QPushButton#primary:enabled {{ background: {theme.accent}; color: {theme.accent_text};

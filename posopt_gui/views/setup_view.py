@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import Qt, QTimer, Signal
@@ -18,14 +17,15 @@ from PySide6.QtWidgets import (
 
 from posopt_gui.controllers.session import Session
 from posopt_gui.document.project import key_of_error
-from posopt_gui.viewmodels.cell_edits import with_new_fixture, without_fixture
 from posopt_gui.viewmodels.cell_facts import Catalogue, in_mm
 from posopt_gui.viewmodels.cell_form import Form, cell_form
-from posopt_gui.viewmodels.form_types import Cell, Field, at, rows_of
-from posopt_gui.viewmodels.path_preview import sentence_of
+from posopt_gui.viewmodels.error_words import error_words
+from posopt_gui.viewmodels.form_types import Field, at, rows_of
+from posopt_gui.viewmodels.project_files import kept_files, key_of_file, path_file
 from posopt_gui.views.beam_drawing_view import BeamDrawingView
 from posopt_gui.views.field_widgets import FieldRow
 from posopt_gui.views.setup_extras import FixtureList, PathFileBox, dropped_path_file
+from posopt_gui.views.setup_fixtures import SetupFixtures
 from posopt_gui.views.setup_path import SetupPath
 from posopt_gui.views.setup_sections import SectionBox
 from posopt_gui.views.setup_style import setup_style
@@ -57,7 +57,6 @@ class SetupView(QWidget):
         self._catalogue: Catalogue | None = None
         self._form: Form | None = None
         self._seen: tuple[Any, ...] = ()
-        self._fixture = 0
         self._wrong = ""
         self._refused = ""
         self._hinted: FieldRow | None = None
@@ -65,6 +64,9 @@ class SetupView(QWidget):
         self.path = SetupPath(session, self)
         self.path.questions.connect(self.path_questions)
         self.path.refused.connect(self._on_refused)
+        self.fixtures = SetupFixtures(session, self)
+        self.fixtures.chosen_changed.connect(self.refresh)
+        self.fixtures.refused.connect(self._on_mesh_refused)
         self._lay_out()
         session.state_changed.connect(self.refresh)
         session.problem_changed.connect(self._show_problem)
@@ -91,20 +93,19 @@ class SetupView(QWidget):
     def refresh(self) -> None:
         """Follow the document."""
         state = self._session.document.state
-        now = (state.cell, state.files, state.folder, self._fixture)
+        now = (state.cell, state.files, state.folder, self.fixtures.chosen)
         if self._form is not None and all(a is b for a, b in zip(now, self._seen, strict=True)):
             return
-        self._seen = now
         if self._catalogue is None:
             self._catalogue = Catalogue()
-        count = len(rows_of(state.cell, "fixtures"))
-        self._fixture = min(self._fixture, max(count - 1, 0))
+        self.fixtures.bound(len(rows_of(state.cell, "fixtures")))
+        self._seen = (*now[:3], self.fixtures.chosen)
         self._form = cell_form(
             state.cell,
             self._catalogue,
             folder=state.folder,
             files=state.files,
-            fixture=self._fixture,
+            fixture=self.fixtures.chosen,
         )
         self._refused = ""
         for section in self._form.sections:
@@ -137,7 +138,7 @@ class SetupView(QWidget):
         if self._form is None:
             self.refresh()
         if key.startswith("fixtures."):
-            self._choose_fixture(int(key.split(".")[1]))
+            self.fixtures.choose(int(key.split(".")[1]))
         assert self._form is not None
         name, field_key = self._form.place_of(key)
         box = self._boxes.get(name)
@@ -185,6 +186,11 @@ class SetupView(QWidget):
         self._problem.setObjectName("problem")
         self._problem.clicked.connect(lambda: self.focus_key(self._wrong))
         self._problem.hide()
+        self._whole = QLabel(self)
+        self._whole.setObjectName("sentence")
+        self._whole.setWordWrap(True)
+        self._whole.setContentsMargins(10, 6, 10, 6)
+        self._whole.hide()
         self._body = QWidget(self)
         self._body.setObjectName("setupBody")
         self._sections = QVBoxLayout(self._body)
@@ -205,6 +211,7 @@ class SetupView(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
         layout.addWidget(self._problem)
+        layout.addWidget(self._whole)
         layout.addWidget(self._scroll, 1)
         layout.addWidget(self._hint)
         self._show_hint(None)
@@ -216,6 +223,7 @@ class SetupView(QWidget):
         box.edited.connect(self._on_edited)
         box.focused.connect(self._show_hint)
         box.toggled.connect(self._on_toggled)
+        box.file_wanted.connect(self.fixtures.ask_mesh)
         self._boxes[name] = box
         self._sections.insertWidget(self._sections.count() - 1, box)
         if section.open:
@@ -231,9 +239,9 @@ class SetupView(QWidget):
             return button
         if name == "fixtures":
             fixtures = FixtureList(self._tr)
-            fixtures.chosen.connect(self._choose_fixture)
-            fixtures.add_wanted.connect(self._add_fixture)
-            fixtures.remove_wanted.connect(self._remove_fixture)
+            fixtures.chosen.connect(self.fixtures.choose)
+            fixtures.add_wanted.connect(self.fixtures.add)
+            fixtures.remove_wanted.connect(self.fixtures.remove)
             return fixtures
         file = PathFileBox(self._tr)
         file.dropped.connect(self.load_path)
@@ -251,7 +259,7 @@ class SetupView(QWidget):
                 extra.show_section(section, self._drawing_words())
             elif isinstance(extra, FixtureList):
                 names = [str(one.get("name", "?")) for one in rows_of(self._form.cell, "fixtures")]
-                extra.show_fixtures(names, self._fixture)
+                extra.show_fixtures(names, self.fixtures.chosen)
             elif isinstance(extra, PathFileBox):
                 extra.show_file(str(at(self._form.cell, "path.file", "")), self._path_words())
                 extra.show_sentence(self._refused)
@@ -286,14 +294,15 @@ class SetupView(QWidget):
     def _on_edited(self, field: Field, value: Any) -> None:
         assert self._form is not None
         document = self._session.document
-        if field.key == "path.kind" and value == "file" and not document.state.files:
+        if field.key == "path.kind" and value == "file" and not path_file(document.state.files):
             self._boxes["path"].show_section(self._form.section("path"), self._form.cell)
             self.path.choose()
             return
         cell = self._form.edited(field, value)
         if cell is None:
             return
-        document.edit(field.label, replace(document.state, cell=cell), merge=f"setup:{field.key}")
+        state = replace(document.state, cell=cell, files=kept_files(cell, document.state.files))
+        document.edit(field.label, state, merge=f"setup:{field.key}")
 
     def _on_refused(self, sentence: str) -> None:
         self._refused = sentence
@@ -307,20 +316,10 @@ class SetupView(QWidget):
             box.set_open(True)
         self._show_extras()
 
-    def _choose_fixture(self, index: int) -> None:
-        self._fixture = index
-        self.refresh()
-
-    def _add_fixture(self) -> None:
-        document = self._session.document
-        cell, self._fixture = with_new_fixture(document.state.cell)
-        document.edit("Add fixture", replace(document.state, cell=cell))
-
-    def _remove_fixture(self, index: int) -> None:
-        document = self._session.document
-        if 0 <= index < len(rows_of(document.state.cell, "fixtures")):
-            cell = without_fixture(document.state.cell, index)
-            document.edit("Remove fixture", replace(document.state, cell=cell))
+    def _on_mesh_refused(self, key: str, sentence: str) -> None:
+        name, field_key = self._form.place_of(key) if key and self._form else ("fixtures", "")
+        if name in self._boxes:
+            self._boxes[name].set_error(field_key, sentence)
 
     def _on_toggled(self, opened: bool) -> None:
         if opened:
@@ -334,7 +333,7 @@ class SetupView(QWidget):
     def _show_error(self) -> None:
         error = self._session.problem_error
         section, field = self._place_of(error)
-        sentence = _sentence(error)
+        sentence = error_words(error, self._tr) if error is not None else ""
         for name, box in self._boxes.items():
             box.set_error(field if name == section else "", sentence if name == section else "")
         self._problem.setVisible(error is not None)
@@ -345,14 +344,17 @@ class SetupView(QWidget):
             text = self._tr("Cannot be used: {where}", where=where)
             self._problem.setText(text)
             self._problem.setToolTip(sentence)
+        # What belongs to no section has no other place for its sentence.
+        self._whole.setText("" if section else sentence)
+        self._whole.setVisible(bool(sentence) and not section)
 
     def _place_of(self, error: PosoptError | None) -> tuple[str, str]:
         self._wrong = ""
         if not isinstance(error, InputError) or self._form is None:
             return "", ""
         key = key_of_error(error)
-        if key is None and error.place is not None and _is_path_file(error, self._form.cell):
-            key = "path"
+        if key is None and error.place is not None:
+            key = key_of_file(self._form.cell, error.place.file)
         self._wrong = key or ""
         return self._form.place_of(key)
 
@@ -363,15 +365,3 @@ class SetupView(QWidget):
             )
             return
         self._hint.setText(row.tip())
-
-
-def _sentence(error: PosoptError | None) -> str:
-    if error is None:
-        return ""
-    return sentence_of(error) if isinstance(error, InputError) else str(error)
-
-
-def _is_path_file(error: InputError, cell: Cell) -> bool:
-    assert error.place is not None
-    file = at(cell, "path.file")
-    return isinstance(file, str) and Path(error.place.file).name == Path(file).name

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, QTimer
 from PySide6.QtWidgets import QProgressBar, QStatusBar
 
 from posopt_gui.controllers.session import Message, Session
@@ -30,6 +30,8 @@ class StatusLine(QObject):
         super().__init__(bar)
         self._session = session
         self._tr = session.look.tr
+        self._kept: Message | None = None
+        self._just_said = False
         self.words = ElidedLabel()
         self._progress = QProgressBar()
         self._progress.setFixedSize(180, 8)
@@ -40,7 +42,11 @@ class StatusLine(QObject):
         session.progress.connect(self._on_progress)
         session.message.connect(self._on_message)
         session.result_changed.connect(self.refresh)
+        session.problem_changed.connect(self.refresh)
+        session.state_changed.connect(self._forget)
         session.stale_changed.connect(self.refresh)
+        # What was said was said in the other language; how things stand is said anew.
+        session.look.language_changed.connect(self._forget)
         session.look.language_changed.connect(self.refresh)
         session.look.theme_changed.connect(self.refresh)
         self._on_planning(False)
@@ -50,9 +56,16 @@ class StatusLine(QObject):
         session = self._session
         if session.planning:
             return
-        trouble = trouble_of(None, session.plan_error, session.answer, self._tr)
+        cell = session.document.state.cell
+        trouble = trouble_of(
+            session.problem_error, session.plan_error, session.answer, self._tr, cell
+        )
         sequence = session.sequence
-        if session.stale:
+        if self._kept is not None:
+            self._tell(self._kept)
+        elif session.problem_error is not None and trouble is not None:
+            self.words.tell(_in_one_line(trouble), session.look.theme.error)
+        elif session.stale:
             self.words.tell(self._tr("The inputs have changed. Plan to update."))
         elif trouble is not None:
             self.words.tell(_in_one_line(trouble), session.look.theme.error)
@@ -69,6 +82,8 @@ class StatusLine(QObject):
         self._progress.setRange(0, 0)
         if not busy:
             self.refresh()
+        elif not self._just_said:
+            self._kept = None
 
     def _on_progress(self, stage: str, done: int, total: int) -> None:
         self._progress.setRange(0, 1000 if total else 0)
@@ -81,9 +96,22 @@ class StatusLine(QObject):
             # The refusal is said in the window's language.
             self.refresh()
             return
-        theme = session.look.theme
+        if message.severity != "info":
+            # It stays in view until something else is done; planning at once would hide it.
+            self._kept, self._just_said = message, True
+            QTimer.singleShot(0, self, self._is_old)
+        self._tell(message)
+
+    def _tell(self, message: Message) -> None:
+        theme = self._session.look.theme
         colours = {"error": theme.error, "warning": theme.warning}
-        self.words.tell(text, colours.get(message.severity, ""))
+        self.words.tell(message.text, colours.get(message.severity, ""))
+
+    def _is_old(self) -> None:
+        self._just_said = False
+
+    def _forget(self) -> None:
+        self._kept = None
 
 
 def _in_one_line(trouble: Trouble) -> str:

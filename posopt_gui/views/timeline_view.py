@@ -14,10 +14,11 @@ from PySide6.QtGui import (
     QPixmap,
     QPolygonF,
 )
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QSlider, QToolButton, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QToolButton, QWidget
 
 from posopt_gui.controllers.playback import SPEEDS, PlaybackController
 from posopt_gui.controllers.session import Session
+from posopt_gui.views.quiet_editors import QuietCombo
 
 STEPS = 20
 """Positions of the slider between two waypoints."""
@@ -93,7 +94,7 @@ class TimelineView(QWidget):
         self._slider.setPageStep(5 * STEPS)
         self._count = QLabel()
         self._clock = QLabel()
-        self._speed = QComboBox()
+        self._speed = QuietCombo()
         for speed in SPEEDS:
             self._speed.addItem(f"{speed:g}×", speed)
         self._speed.setCurrentIndex(SPEEDS.index(1.0))

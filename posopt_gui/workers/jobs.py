@@ -13,6 +13,7 @@ from PySide6.QtCore import QObject, QThreadPool, Signal
 
 from solver.errors import Cancelled, PosoptError
 from solver.progress import Monitor
+from solver.units import MS_PER_S
 
 REPORT_INTERVAL = 0.05
 """Least time between two reports of progress [s]: more would only flood the event queue."""
@@ -67,7 +68,8 @@ class JobLine(QObject):
 
     Signals come on the thread that owns this object: `done(answer)`, `failed(error)` (a
     PosoptError, or any other exception, which is a defect), `progress(stage, done, total)` and
-    `busy_changed(bool)`. After `stop` nothing more is said of the jobs before.
+    `busy_changed(bool)`. After `stop` nothing more is said of the jobs before. What takes the
+    answers and the errors of all jobs can be given at once.
     """
 
     done = Signal(object)
@@ -75,8 +77,18 @@ class JobLine(QObject):
     progress = Signal(str, int, int)
     busy_changed = Signal(bool)
 
-    def __init__(self, pool: QThreadPool, parent: QObject | None = None) -> None:
+    def __init__(
+        self,
+        pool: QThreadPool,
+        parent: QObject | None = None,
+        done: Callable[..., None] | None = None,
+        failed: Callable[[object], None] | None = None,
+    ) -> None:
         super().__init__(parent)
+        if done is not None:
+            self.done.connect(done)
+        if failed is not None:
+            self.failed.connect(failed)
         self._pool = pool
         self._relay = _Relay()
         self._relay.progress.connect(self._on_progress)
@@ -165,6 +177,23 @@ class JobLine(QObject):
         # An answer that is no longer wanted is dropped.
         if number == self._newest and not self._closed:
             tell()
+
+
+def end_all(*owners: QObject, patience: int) -> bool:
+    """Cancel every job under these objects and wait for all of them, at most `patience` [ms].
+
+    False where one has not ended: a kernel that is being compiled cannot be stopped.
+    """
+    for owner in owners:
+        for line in owner.findChildren(JobLine):
+            line.close()
+    end = time.monotonic() + patience / MS_PER_S
+    ended = True
+    for owner in owners:
+        for pool in owner.findChildren(QThreadPool):
+            left = max(0, int((end - time.monotonic()) * MS_PER_S))
+            ended = pool.waitForDone(left) and ended
+    return ended
 
 
 def _send(signal: Any, number: int, value: object) -> None:

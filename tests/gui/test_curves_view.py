@@ -29,9 +29,9 @@ def test_each_joint_is_drawn_in_pendant_degrees_over_the_waypoint_numbers(view, 
 
 def test_references_are_drawn_when_they_are_chosen(view):
     view.legend.set_shown(["CONSTANT"])
-    assert set(view.joint_plots[0]._curves) == {"PLAN", "CONSTANT"}
+    assert view.joint_plots[0].shown_curves == {"PLAN", "CONSTANT"}
     view.legend.set_shown(["NOMINAL", "RANDOM"])
-    assert set(view.joint_plots[0]._curves) == {"PLAN", "NOMINAL", "RANDOM"}
+    assert view.joint_plots[0].shown_curves == {"PLAN", "NOMINAL", "RANDOM"}
 
 
 def test_one_cursor_runs_through_all_plots_and_can_be_dragged(view, planned):
@@ -130,6 +130,7 @@ def test_a_wish_moves_the_drawn_line(view, planned, qtbot):
     before = line_of(view.joint_plots[3], "PLAN")[1].copy()
     with qtbot.waitSignal(planned.result_changed, timeout=60_000):
         planned.pin(20, 0.0)
+    planned.turns.finish()
     after = line_of(view.joint_plots[3], "PLAN")[1]
     assert not np.allclose(before, after)
     np.testing.assert_allclose(after, np.rad2deg(planned.sequence.pendant[:, 3]))
@@ -151,5 +152,5 @@ def test_before_the_first_plan_the_view_is_empty_and_sound(qtbot, session):
         made.show()
     for index in range(made.tabs.count()):
         made.tabs.setCurrentIndex(index)
-    assert made.joint_plots[0]._curves == {}
+    assert made.joint_plots[0].shown_curves == set()
     assert made.feed.curve is None

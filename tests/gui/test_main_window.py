@@ -80,6 +80,8 @@ def test_the_frame_is_there_before_the_panels(qapp, tmp_path):
     ready = []
     made.ready.connect(lambda: ready.append(1))
     start.begin(made)
+    assert ready == []
+    wait(lambda: ready)
     assert ready == [1]
     wait(lambda: made.session.result is not None)
     assert made.actions_table["export"].isEnabled()
@@ -318,7 +320,7 @@ def test_what_was_left_behind_is_recovered_and_told(qapp, tmp_path):
     second.files.ask = person(first)
     second.show()
     start.begin(second)
-    assert second.session.document.value("settings.safety_distance_mm") == 43.0
+    wait(lambda: second.session.document.value("settings.safety_distance_mm") == 43.0)
     assert second.files.modified
     assert any("recovered" in note.text for note in second.results._said)
     assert close_window(second)

@@ -292,9 +292,9 @@ class Monkey:
     def fixture(self) -> None:
         setup = self.window.setup
         if self.dice.random() < 0.5:
-            setup._add_fixture()
+            setup.fixtures.add("box")
         else:
-            setup._remove_fixture(self.dice.randrange(3))
+            setup.fixtures.remove(self.dice.randrange(3))
 
     def pause(self) -> None:
         QTest.qWait(self.dice.randrange(30))

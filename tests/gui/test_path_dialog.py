@@ -61,7 +61,7 @@ def test_cancelling_changes_nothing(qtbot, session):
 
 def test_a_missing_orientation_is_stated_in_the_dialog(qtbot, session):
     dialog = dialog_for(qtbot, session, "x,y,z\n0,13,40\n10,13,41\n")
-    assert "orientation" in dialog.preview.sentence
+    assert "orientation" in dialog.preview.error.message
     flag = dialog.row("path.orientation").editors[0]
     qtbot.mouseClick(flag, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(dialog.accept_button.isEnabled, timeout=60_000)

@@ -109,9 +109,11 @@ def test_the_number_at_the_line_is_the_clearance_of_the_plan_rounded_down(view, 
 def test_of_a_stale_plan_no_clearance_is_shown(qtbot, view, planned):
     planned.document.set_value("settings.safety_distance_mm", 40.0, "Safety distance")
     assert planned.stale
+    planned.turns.finish()
     assert view.report is None
     assert view.canvas._distance.text == ""
     planned.document.undo()
+    planned.turns.finish()
     assert view.report is not None
 
 

@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QApplication
 
 from posopt_gui.document.project import ProjectState, state_of_cell
 from posopt_gui.views.beam_drawing_view import BeamDrawingView
-from posopt_gui.views.setup_extras import FixtureList, PathFileBox
+from posopt_gui.views.setup_extras import PathFileBox
 from posopt_gui.views.setup_view import SetupView
 
 
@@ -20,6 +20,7 @@ def view(qtbot, session):
     shown.refresh()
     yield shown
     shown.path.loader.close()
+    shown.fixtures.loader.close()
 
 
 def opened(view, section, key):
@@ -183,21 +184,6 @@ def test_free_dimensions_take_the_place_of_the_section(qtbot, view, session):
     assert box.extra.section.height == pytest.approx(0.42)
 
 
-def test_fixtures_are_added_chosen_edited_and_removed(qtbot, view, session):
-    view.section("fixtures").set_open(True)
-    fixtures = view.section("fixtures").extra
-    assert isinstance(fixtures, FixtureList)
-    qtbot.mouseClick(fixtures.add_button, Qt.MouseButton.LeftButton)
-    assert fixtures.list.currentRow() == 2
-    row = view.section("fixtures").row("fixtures.2.name")
-    type_into(qtbot, row.editors[0], "wall")
-    assert session.document.value("fixtures.2.name") == "wall"
-    qtbot.mouseClick(fixtures.remove_button, Qt.MouseButton.LeftButton)
-    assert len(session.document.value("fixtures")) == 2
-    fixtures.list.setCurrentRow(0)
-    assert view.section("fixtures").row("fixtures.0.name").editors[0].text() == "trestle_near"
-
-
 def test_branches_are_chosen_by_their_letters(qtbot, view, session):
     row = opened(view, "lean", "settings.branches")
     assert [button.text() for button in row.editors][:2] == ["NUT", "FUT"]
@@ -355,3 +341,33 @@ def test_the_other_shipped_cells_are_shown_without_a_step(qtbot, session, name):
     view.set_open_sections(tuple(view._boxes))
     assert not session.document.can_undo
     view.path.loader.close()
+
+
+def test_an_error_of_no_field_is_said_in_full_at_the_top(qtbot, view, session):
+    position = session.document.value("beam.lower_edge_mm")
+    assert position is not None
+    # A thicker web reaches over the points of the path.
+    session.document.set_value("beam.web_mm", 60.0)
+    for key, value in (("height_mm", 300.0), ("width_mm", 300.0), ("flange_mm", 15.0)):
+        session.document.set_value(f"beam.{key}", value)
+    qtbot.waitUntil(lambda: "enters the steel" in str(session.problem_error), timeout=60_000)
+    assert view._whole.isVisibleTo(view)
+    assert "enters the steel of beam" in view._whole.text()
+    session.look.set_language("zh_CN")
+    assert "进入型钢" in view._whole.text()
+    assert not {"the", "steel", "expected"} & set(view._whole.text().split())
+    session.look.set_language("en")
+    while session.document.can_undo:
+        session.document.undo()
+    wait_for_problem(qtbot, session)
+    assert not view._whole.isVisibleTo(view)
+
+
+def test_a_wrong_value_is_told_in_chinese(qtbot, view, session):
+    session.look.set_language("zh_CN")
+    row = opened(view, "limits", "settings.safety_distance_mm")
+    type_into(qtbot, row.editors[0], "-5")
+    wait_for_problem(qtbot, session)
+    assert row.error == "应为不小于 0（mm），实际为-5.0"
+    session.look.set_language("en")
+    assert row.error == "Expected at least 0 in mm, found -5.0"

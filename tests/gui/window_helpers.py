@@ -119,7 +119,13 @@ def settle(window: MainWindow) -> None:
     """Wait until nothing is being read, planned, answered or checked any more."""
     session = window.session
     lines = (session._builds, session._plans, session._wishes, session._checks)
-    wait(lambda: not session._timer.isActive() and not any(line._running for line in lines))
+    wait(
+        lambda: (
+            not session._timer.isActive()
+            and not any(line._running for line in lines)
+            and not session.turns.waiting
+        )
+    )
 
 
 def plan(window: MainWindow) -> None:

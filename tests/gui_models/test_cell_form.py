@@ -11,16 +11,15 @@ from posopt_gui.viewmodels.cell_edits import (
     with_face,
     with_frame,
     with_measure,
-    with_new_fixture,
     with_path_kind,
     with_rule,
     with_section,
     with_spacing,
     with_standard,
-    without_fixture,
 )
 from posopt_gui.viewmodels.cell_facts import FREE, Catalogue, facts_of
 from posopt_gui.viewmodels.cell_form import cell_form, put
+from posopt_gui.viewmodels.fixture_edits import with_new_fixture, without_fixture
 from posopt_gui.viewmodels.form_types import Kind, at
 from solver.catalog.cells import load_cell, read_cell
 from solver.catalog.names import resource_folder

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from posopt_gui.viewmodels.error_words import error_words
 from posopt_gui.viewmodels.path_preview import (
     examine,
     guessed_mapping,
@@ -114,9 +115,10 @@ def test_cells_come_through_a_mapping_as_they_are(words, delimiter):
 def test_a_malformed_file_ends_with_the_sentence_of_the_importer(name, data):
     preview = look(data, name=name)
     assert preview.toolpath is None
-    assert preview.sentence
-    assert "\n" not in preview.sentence
-    assert name in preview.sentence or preview.error.place is not None
+    sentence = error_words(preview.error, str.format)
+    assert sentence
+    assert "\n" not in sentence
+    assert name in sentence or preview.error.place is not None
     assert not preview.askable
 
 
@@ -126,7 +128,7 @@ def test_a_missing_frame_is_asked_and_the_answer_suffices():
     preview = look(text, path=path)
     assert preview.understood
     assert preview.askable
-    assert "frame" in preview.sentence
+    assert "frame" in preview.error.message
     assert len(look(text, path={**path, "frame": "beam"}).toolpath) == 5
 
 

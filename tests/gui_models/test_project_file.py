@@ -2,6 +2,7 @@ import base64
 import datetime
 import json
 import math
+import os
 import random
 import subprocess
 import sys
@@ -105,6 +106,10 @@ def without(key):
     return json.dumps(document).encode()
 
 
+def row(key):
+    return json.loads(project_bytes(STATE))[key][0]
+
+
 def raw(key, text):
     """The project with a value that is written as it stands."""
     return changed(**{key: "@@"}).replace(b'"@@"', text.encode())
@@ -128,14 +133,17 @@ def no_documents():
         ("latin", '{"format": "é"}'.encode("latin-1")), ("null", b"null"), ("number", b"1"),
         ("text", b'"posopt-project"'), ("list", b"[]"), ("empty table", b"{}"),
         ("open lists", b"[" * 100_000), ("open tables", b'{"a":' * 100_000),
-        ("two documents", whole + whole), ("toml", b'[cell]\nname = "a"\n'),
+        ("two documents", whole + whole),
+        ("name twice", whole.replace(b'"folder"', b'"cell": {}, "folder"')),
+        ("inner name twice", whole.replace(b'"name": "a"', b'"name": "a", "name": "b"')),
+        ("toml", b'[cell]\nname = "a"\n'),
     )  # fmt: skip
 
 
 def wrong_values():
     for value in ("posopt", None, 1, ["posopt-project"], {}):
         yield f"format {value}", changed(format=value)
-    for value in (0, 2, -1, "1", None, 10**30, [1], 1.5, True):
+    for value in (0, 3, -1, "1", None, 10**30, [1], 1.5, True):
         yield f"version {value}", changed(version=value)
     for key in ("format", "version", "cell"):
         yield f"no {key}", without(key)
@@ -149,7 +157,9 @@ def wrong_values():
         yield f"files {value}", changed(files=value)
     for value in (1, None, {}, []):
         yield f"folder {value}", changed(folder=value)
+    yield "unknown key", changed(colour="red")
     for key in ("pins", "regions"):
+        yield f"{key} unknown key", changed(**{key: [{**row(key), "colour": "red"}]})
         for value in ({}, "a", 1, [1], [None], [[]], [{}], ["a"]):
             yield f"{key} {value}", changed(**{key: value})
 
@@ -187,6 +197,34 @@ def test_a_malformed_project_is_refused_in_one_sentence(name, data):
     assert len(sentence) < 300
 
 
+PLACED = {
+    "cut": (b'{\n "format": "posopt-project",\n "ver', 3, 2),
+    "NaN": (raw("cell", '{"a":\n  NaN}').replace(b'"cell"', b'\n"cell"'), 3, 3),
+    "latin-1": ('{"format":\n "é"}'.encode("latin-1"), 2, 3),
+    "name twice": (b'{"format": 1,\n"format": 2}', 2, 1),
+    "pin": (changed(pins=["@@"]).replace(b'"@@"', b'\n  {"lean": 1,\n "waypoint": -1}'), 3, 14),
+    "unknown key": (changed(colour="@@").replace(b'"@@"', b'\n   "red"'), 2, 4),
+}
+
+
+@pytest.mark.parametrize(("data", "line", "column"), PLACED.values(), ids=PLACED)
+def test_a_refusal_names_line_and_column(data, line, column):
+    with pytest.raises(InputError) as caught:
+        read_project(data, "work.posopt")
+    place = caught.value.place
+    assert (place.file, place.line, place.column) == ("work.posopt", line, column)
+    assert f"line {line}, column {column}" in str(caught.value)
+
+
+def test_a_project_of_a_newer_version_says_so_whatever_else_it_holds():
+    with pytest.raises(InputError, match="has version '3', this posopt reads 1 and 2"):
+        read_project(changed(version=3, shift="red"), "work.posopt")
+
+
+def test_a_project_of_the_first_version_is_read():
+    assert read_project(changed(version=1), "work.posopt") == STATE
+
+
 @given(st.binary(max_size=300) | st.text(max_size=100).map(lambda text: text.encode("utf-8")))
 def test_no_bytes_raise_anything_else(data):
     with pytest.raises(InputError):
@@ -220,6 +258,15 @@ def test_places_that_hold_no_file_are_refused(tmp_path):
     for path in (tmp_path, tmp_path / "none.posopt", tmp_path / "none" / "a.posopt"):
         with pytest.raises(InputError):
             load_project(path)
+    loop, pipe = tmp_path / "loop.posopt", tmp_path / "pipe.posopt"
+    loop.symlink_to(loop)
+    with pytest.raises(InputError, match="cannot be read"):
+        load_project(loop)
+    if hasattr(os, "mkfifo"):
+        # Reading it would wait for ever.
+        os.mkfifo(pipe)
+        with pytest.raises(InputError, match="is no file"):
+            load_project(pipe)
     for path in (tmp_path, tmp_path / "none" / "a.posopt"):
         with pytest.raises(InputError):
             save_project(STATE, path)

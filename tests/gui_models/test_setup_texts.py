@@ -18,7 +18,7 @@ from posopt_gui.viewmodels.cell_edits import (
 )
 from posopt_gui.viewmodels.cell_facts import FREE, Catalogue, facts_of
 from posopt_gui.viewmodels.cell_form import cell_form, put
-from posopt_gui.viewmodels.form_fields_cell import with_shape
+from posopt_gui.viewmodels.fixture_edits import with_shape
 from posopt_gui.viewmodels.form_types import range_of
 from posopt_gui.viewmodels.touched_points import FLANGES, SIDES
 from solver.catalog.names import resource_folder

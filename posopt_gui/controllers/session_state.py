@@ -1,0 +1,123 @@
+"""What a session holds and tells: read by all views, changed by the session alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+
+from posopt_gui.controllers.said import Hover
+from solver.model.scheme import Scheme
+
+if TYPE_CHECKING:
+    from solver.analysis.result import PlanningResult, Sequence
+    from solver.errors import PosoptError
+    from solver.model.problem import PlanningProblem
+    from solver.pipeline.program_check import ProgramReport
+    from solver.pipeline.replanning import Replanned
+
+
+class SessionState(QObject):
+    """Problem, plan, answer to the wishes, checks, place and what is pointed at."""
+
+    state_changed = Signal()
+    problem_changed = Signal()
+    result_changed = Signal()
+    stale_changed = Signal(bool)
+    cursor_changed = Signal(int)
+    hover_changed = Signal(object)
+    place_changed = Signal(float)
+    planning_changed = Signal(bool)
+    progress = Signal(str, int, int)
+    message = Signal(object)
+    check_changed = Signal()
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._problem: PlanningProblem | None = None
+        self._problem_error: PosoptError | None = None
+        self._plan_error: PosoptError | None = None
+        self._result: PlanningResult | None = None
+        self._answer: Replanned | None = None
+        self._report: ProgramReport | None = None
+        self._stale = self._previewing = False
+        self._place = 0.0
+        self._hover: Hover | None = None
+
+    @property
+    def problem(self) -> PlanningProblem | None:
+        """The problem that the inputs state, None where they cannot be used."""
+        return self._problem
+
+    @property
+    def problem_error(self) -> PosoptError | None:
+        """Why the inputs cannot be used."""
+        return self._problem_error
+
+    @property
+    def plan_error(self) -> PosoptError | None:
+        """Why there is no plan for inputs that can be used (an InfeasiblePathError as a rule)."""
+        return self._plan_error
+
+    @property
+    def result(self) -> PlanningResult | None:
+        """The last plan."""
+        return self._result
+
+    @property
+    def answer(self) -> Replanned | None:
+        """The plan under pins and forbidden regions, None where there are none."""
+        return self._answer
+
+    @property
+    def sequence(self) -> Sequence | None:
+        """The sequence that is shown: under the wishes where there are any."""
+        if self._answer is not None and self._answer.sequence is not None:
+            return self._answer.sequence
+        return self._result.sequence if self._result is not None else None
+
+    @property
+    def chosen_result(self) -> PlanningResult | None:
+        """The plan with the shown sequence as its own: what is exported."""
+        if self._result is None or self._answer is None or self._answer.sequence is None:
+            return self._result
+        sequences = {**self._result.sequences, Scheme.EXACT: self._answer.sequence}
+        return replace(self._result, sequences=sequences, scheme=Scheme.EXACT)
+
+    @property
+    def report(self) -> ProgramReport | None:
+        """Checks of the program of the shown sequence."""
+        return self._report
+
+    @property
+    def stale(self) -> bool:
+        """Whether inputs changed since the plan."""
+        return self._stale
+
+    @property
+    def previewing(self) -> bool:
+        """Whether the shown sequence answers a pin that is still being dragged."""
+        return self._previewing
+
+    @property
+    def place(self) -> float:
+        """Place of the playback, in waypoints from 0."""
+        return self._place
+
+    @property
+    def cursor(self) -> int:
+        """The waypoint that is looked at, from 0."""
+        return round(self._place)
+
+    @property
+    def hover(self) -> Hover | None:
+        """The candidate under the mouse."""
+        return self._hover
+
+    @property
+    def waypoints(self) -> int:
+        """Number of waypoints of the plan, or of the path."""
+        if self._result is not None:
+            return len(self._result.problem.toolpath)
+        return len(self._problem.toolpath) if self._problem is not None else 0
