@@ -5,14 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QSettings, QSize, Qt, QThreadPool, QTimer, Signal
+from PySide6.QtCore import QSettings, QThreadPool, QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import (
     QApplication,
     QLabel,
     QMainWindow,
     QTabWidget,
-    QToolBar,
     QToolButton,
     QWidget,
 )
@@ -24,9 +23,9 @@ from posopt_gui.panels import building_steps, load_modules
 from posopt_gui.style import apply_theme
 from posopt_gui.views.one_flush import OneFlush
 from posopt_gui.views.places import Places
-from posopt_gui.views.quiet_editors import QuietCombo
 from posopt_gui.views.shell_parts import RecentMenu
 from posopt_gui.views.status_line import StatusLine
+from posopt_gui.views.tool_bar import ToolBar
 from posopt_gui.workers.jobs import JobLine, end_all
 from solver.model.scheme import Scheme
 
@@ -86,7 +85,8 @@ class MainWindow(QMainWindow):
         self._menus = self.actions_table.fill(self.menuBar())
         self._recent = RecentMenu(self)
         self._menus["File"].insertMenu(self.actions_table["save"], self._recent)
-        self._make_tool_bar()
+        self._bar = ToolBar(self, self.actions_table, SCHEMES)
+        self.addToolBar(self._bar)
         self._make_status_bar()
         self.places = Places(self, settings)
         self.tabs = QTabWidget()
@@ -100,38 +100,10 @@ class MainWindow(QMainWindow):
         self.retranslate()
         self.retheme()
 
-    def _make_tool_bar(self) -> None:
-        bar = QToolBar(self)
-        bar.setObjectName("main")
-        bar.setMovable(False)
-        bar.setIconSize(QSize(18, 18))
-        bar.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextOnly)
-        table = self.actions_table
-        for group in (("open", "save"), ("undo", "redo"), ("plan", "stop")):
-            for name in group:
-                bar.addAction(table[name])
-            bar.addSeparator()
-        button = bar.widgetForAction(table["plan"])
-        if isinstance(button, QToolButton):
-            button.setObjectName("primary")
-        self._scheme_words, self.scheme = QLabel(), QuietCombo()
-        self._scheme_words.setBuddy(self.scheme)
-        for scheme in SCHEMES:
-            self.scheme.addItem(scheme.value, scheme)
-        bar.addWidget(self._scheme_words)
-        bar.addWidget(self.scheme)
-        bar.addAction(table["compare"])
-        bar.addAction(table["live"])
-        bar.addSeparator()
-        bar.addAction(table["export"])
-        for tool in bar.findChildren(QToolButton):
-            tool.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.addToolBar(bar)
-        self._bar = bar
-
     def _make_status_bar(self) -> None:
         bar = self.statusBar()
         self.status = StatusLine(self.session, bar)
+        self.status.checks_wanted.connect(self.show_export)
         self._units, self._languages = QLabel("mm · °"), QToolButton()
         self._languages.clicked.connect(self.actions_table["chinese"].trigger)
         for widget in (self._units, self._languages):
@@ -233,7 +205,7 @@ class MainWindow(QMainWindow):
         )
         self.actions_table["dark"].setChecked(look.theme.dark)
         self.actions_table["chinese"].setChecked(look.language == "zh_CN")
-        self.scheme.activated.connect(self._choose_scheme)
+        self._bar.scheme.activated.connect(self._choose_scheme)
         session.planning_changed.connect(self._on_planning)
         session.state_changed.connect(self._on_state)
         session.document.history_changed.connect(self._on_state)
@@ -254,11 +226,7 @@ class MainWindow(QMainWindow):
             self.tabs.setTabText(0, self._tr("Curves"))
             self.tabs.setTabText(1, self._tr("Results"))
             self.tabs.setTabText(2, self._tr("Front"))
-        self.scheme.setToolTip(self._tr("How the graph is searched; exact is proven optimal"))
-        self.scheme.setAccessibleName(self._tr("Scheme"))
-        self._scheme_words.setText(self._tr("Scheme"))
-        for row, scheme in enumerate(SCHEMES):
-            self.scheme.setItemText(row, self._tr(scheme.value))
+        self._bar.retranslate(self.session.look)
         self._languages.setText("English" if self.session.look.language == "zh_CN" else "中文")
         self._languages.setToolTip(self._tr("Change the language"))
         self._show_recent()
@@ -387,9 +355,7 @@ class MainWindow(QMainWindow):
             self.actions_table.say_what(name, self._tr(label) if label else "")
         state = document.state
         self.actions_table["clear_wishes"].setEnabled(bool(state.pins or state.regions))
-        values = [scheme.value for scheme in SCHEMES]
-        value = document.value("settings.scheme")
-        self.scheme.setCurrentIndex(values.index(value) if value in values else 0)
+        self._bar.show_scheme(document.value("settings.scheme"))
         self._on_title()
 
     def _on_title(self) -> None:

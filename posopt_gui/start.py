@@ -17,6 +17,7 @@ from posopt_gui.controllers.session import Session
 from posopt_gui.document.document import Document
 from posopt_gui.look import Look
 from posopt_gui.main_window import MainWindow
+from posopt_gui.qt_words import QtWords
 from posopt_gui.style import prepare_fonts
 from solver.errors import PosoptError
 
@@ -52,7 +53,9 @@ def make_window(
     state, path = state_of_argument(file)
     chosen = language or settings.value("look/language", "en", type=str)
     colours = theme or settings.value("look/theme", "light", type=str)
-    session = Session(Document(state), Look(str(chosen), str(colours)))
+    look = Look(str(chosen), str(colours))
+    QtWords(look)
+    session = Session(Document(state), look)
     files = Files(session, settings)
     files.opened(path)
     return MainWindow(session, files, Recovery(session, files), settings)

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, QStandardPaths, QThreadPool, QTimer, Signal
+from PySide6.QtCore import QObject, QThreadPool, QTimer, Signal
 
+from posopt_gui.controllers.folders import first_folder
 from posopt_gui.controllers.session import CLOSING_TIME, Message, Session
 from posopt_gui.viewmodels.error_words import error_words
 from posopt_gui.viewmodels.export_model import (
@@ -48,9 +49,7 @@ class Exporter(QObject):
         self._now = Situation()
         self._active = False
         self._named = False
-        self._folder = Path(
-            QStandardPaths.writableLocation(QStandardPaths.StandardLocation.DocumentsLocation)
-        )
+        self._folder = first_folder()
         self._key: tuple[object, ...] | None = None
         self._stamped = ""
         self._pool = QThreadPool(self)

@@ -8,8 +8,9 @@ from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Protocol
 
-from PySide6.QtCore import QObject, QSettings, QStandardPaths, QThreadPool, Signal
+from PySide6.QtCore import QObject, QSettings, QThreadPool, Signal
 
+from posopt_gui.controllers.folders import first_folder
 from posopt_gui.controllers.guide import guide_file
 from posopt_gui.controllers.path_import import (
     PATH_SUFFIXES,
@@ -155,8 +156,7 @@ class Files(QObject):
         kept = self._settings.value(FOLDER_KEY, "", type=str)
         if isinstance(kept, str) and kept and Path(kept).is_dir():
             return Path(kept)
-        place = QStandardPaths.StandardLocation.DocumentsLocation
-        return Path(QStandardPaths.writableLocation(place) or Path.home())
+        return first_folder()
 
     @property
     def recent(self) -> tuple[Path, ...]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from PySide6.QtCore import QObject, QThreadPool, Signal
 
 from posopt_gui.controllers.session import Message
+from posopt_gui.viewmodels.error_words import error_words
 from posopt_gui.viewmodels.front_model import FrontModel, Mark, front_model, present_mark
 from posopt_gui.workers.jobs import JobLine
 from solver.errors import PosoptError
@@ -179,7 +180,7 @@ class Front(QObject):
     def _on_failed(self, error: object) -> None:
         tr = self._session.look.tr
         if isinstance(error, PosoptError):
-            self._session.say(Message("warning", str(error)))
+            self._session.say(Message("warning", error_words(error, tr)))
         else:
             words = "posopt met a defect of its own and kept your work; please report it: {text}"
             text = f"{type(error).__name__}: {error}"

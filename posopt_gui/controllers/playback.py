@@ -66,7 +66,7 @@ class PlaybackController(QObject):
         self._times = np.zeros(1)
         self._time = 0.0
         self._speed = 1.0
-        self._loop = False
+        self._loop = self._linked = False
         self._moving = False
         self._clock = QElapsedTimer()
         self._timer = QTimer(self)
@@ -104,6 +104,11 @@ class PlaybackController(QObject):
         return float(self._times[-1])
 
     @property
+    def linked(self) -> bool:
+        """Whether the way leads over links between passes."""
+        return self._linked
+
+    @property
     def times(self) -> FloatArray:
         """(n,) when each waypoint is reached [s]."""
         return self._times
@@ -119,10 +124,15 @@ class PlaybackController(QObject):
         self.playing_changed.emit(True)
 
     def pause(self) -> None:
-        """Stop where it is."""
+        """Stop, at the nearer waypoint: between two there is nothing that the plan states."""
         if self.playing:
             self._timer.stop()
+            self.settle()
             self.playing_changed.emit(False)
+
+    def settle(self) -> None:
+        """Go to the nearer waypoint, where the place is between two."""
+        self._session.set_place(float(round(self._session.place)))
 
     def toggle(self) -> None:
         """Play or pause."""
@@ -200,5 +210,6 @@ class PlaybackController(QObject):
             self._times = np.zeros(1)
         else:
             self._times = waypoint_times(problem, sequence.pendant if sequence else None)
+            self._linked = len(problem.toolpath.passes) > 1
         self._on_place(session.place)
         self.times_changed.emit()

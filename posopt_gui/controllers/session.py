@@ -22,6 +22,7 @@ from solver.model.wishes import Pin, Region
 
 if TYPE_CHECKING:
     from solver.model.problem import PlanningProblem
+    from solver.model.toolpath import Toolpath
     from solver.pipeline.program_check import ProgramReport
     from solver.pipeline.replanning import Replanned
 
@@ -53,6 +54,7 @@ class Session(SessionState):
         self._plans.progress.connect(self.progress)
         self._plans.busy_changed.connect(self.planning_changed)
         self._planned_state: ProjectState | None = None
+        self._path: Toolpath | None = None
         self._ordered = document.state
         self._asked: tuple[tuple[Pin, ...], tuple[Region, ...]] = ((), ())
         self._timer = QTimer(self)
@@ -71,12 +73,13 @@ class Session(SessionState):
         """Begin with another project; nothing of the one before stays."""
         for line in (self._builds, self._plans, self._wishes, self._checks):
             line.stop()
-        self._problem = self._problem_error = self._plan_error = None
+        self._problem = self._problem_error = self._plan_error = self._path = None
         self._result = self._answer = self._report = None
         self._planned_state = None
         self._asked = ((), ())
         self._place = 0.0
         self.set_hover(None)
+        self.keep(None)
         self.document.reset(state, saved=saved)
         self.problem_changed.emit()
         self.result_changed.emit()
@@ -114,6 +117,7 @@ class Session(SessionState):
             return
         before = self.cursor
         self._place = place
+        self.keep(None)
         self.place_changed.emit(place)
         if self.cursor != before:
             self.cursor_changed.emit(self.cursor)
@@ -123,6 +127,17 @@ class Session(SessionState):
         if hover != self._hover:
             self._hover = hover
             self.hover_changed.emit(hover)
+
+    def look_at(self, candidate: Hover) -> None:
+        """Look at a candidate that the sequence does not pass, until the place changes."""
+        self.set_cursor(candidate.waypoint)
+        self.keep(candidate)
+
+    def keep(self, candidate: Hover | None) -> None:
+        """Keep looking at a candidate, None at the sequence."""
+        if candidate != self._kept:
+            self._kept = candidate
+            self.kept_changed.emit(candidate)
 
     def pin(
         self, waypoint: int, lean: float, branch: int | None = None, turn: int | None = None
@@ -193,13 +208,17 @@ class Session(SessionState):
     def _on_document(self) -> None:
         before, state = self._seen, self.document.state
         self._seen = state
+        previewed, self._previewing = self._previewing, False
         self.state_changed.emit()
         if _inputs(before) != _inputs(state):
             self._timer.start()
         self._update_stale()
-        self._previewing = False
         if (state.pins, state.regions) != self._asked and not self._stale:
             self._ask(state.pins, state.regions)
+        elif previewed and not self._wishes.busy:
+            # What was let go of has its answer already; only now it counts, and is checked.
+            self.result_changed.emit()
+            self.check()
 
     def _update_stale(self) -> None:
         planned = self._planned_state
@@ -230,7 +249,9 @@ class Session(SessionState):
         # An answer that is still being worked out belongs to the plan before.
         self._wishes.stop()
         self._checks.stop()
+        self.keep(None)
         self._asked = (planned.state.pins, planned.state.regions)
+        self._tell_moved_pins(planned)
         self._planned_state, self._result = planned.state, planned.result
         self._answer, self._plan_error, self._report = planned.answer, None, None
         self._update_stale()
@@ -239,6 +260,19 @@ class Session(SessionState):
         if wishes != (self.document.state.pins, self.document.state.regions):
             self.end_preview()
         self.check()
+
+    def _tell_moved_pins(self, planned: Planned) -> None:
+        """A pin holds the number of a waypoint: say where that is another place now."""
+        before, self._path = self._path, planned.result.problem.toolpath
+        pins = planned.state.pins
+        if before is None or not pins:
+            return
+        # Loaded when there are pins, not before the window shows.
+        from posopt_gui.viewmodels.wish_words import moved_pins, moved_words  # noqa: PLC0415
+
+        moved = moved_pins(before, self._path, pins)
+        if moved:
+            self.say(Message("warning", moved_words(moved, self.look.tr), moved[0]))
 
     def _plan_failed(self, error: object) -> None:
         if not isinstance(error, PosoptError):
@@ -249,6 +283,7 @@ class Session(SessionState):
             return
         self._wishes.stop()
         self._checks.stop()
+        self.keep(None)
         self._plan_error = error
         self._result = self._answer = self._report = None
         self._planned_state = self._ordered

@@ -27,6 +27,7 @@ class SessionState(QObject):
     stale_changed = Signal(bool)
     cursor_changed = Signal(int)
     hover_changed = Signal(object)
+    kept_changed = Signal(object)
     place_changed = Signal(float)
     planning_changed = Signal(bool)
     progress = Signal(str, int, int)
@@ -44,6 +45,7 @@ class SessionState(QObject):
         self._stale = self._previewing = False
         self._place = 0.0
         self._hover: Hover | None = None
+        self._kept: Hover | None = None
 
     @property
     def problem(self) -> PlanningProblem | None:
@@ -114,6 +116,11 @@ class SessionState(QObject):
     def hover(self) -> Hover | None:
         """The candidate under the mouse."""
         return self._hover
+
+    @property
+    def kept(self) -> Hover | None:
+        """The candidate that was chosen to be looked at, until the place changes."""
+        return self._kept
 
     @property
     def waypoints(self) -> int:

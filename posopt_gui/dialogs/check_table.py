@@ -18,15 +18,19 @@ from posopt_gui.look import Look
 from posopt_gui.viewmodels.export_model import CheckRow
 
 HEADERS: Final = ("", "Check", "Value", "Limit", "Detail")
-WAYPOINT_ROLE: Final = Qt.ItemDataRole.UserRole
 WIDTHS: Final = {1: (25, 190), 2: (19, 140), 3: (19, 140)}
 """Columns with their share of the width [%] and their largest width; the detail gets the rest."""
 
 
 class CheckTable(QTableWidget):
-    """Shows rows of checks; `waypoint_chosen` carries the waypoint from 0 of a clicked row."""
+    """Shows rows of checks.
+
+    For a clicked row `waypoint_chosen` carries its waypoint from 0, and `line_chosen` the file
+    and line of the program that it names.
+    """
 
     waypoint_chosen = Signal(int)
+    line_chosen = Signal(str, int)
 
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(0, len(HEADERS), parent)
@@ -68,7 +72,7 @@ class CheckTable(QTableWidget):
         self._fill()
 
     def _fill(self) -> None:
-        tip = self._look.tr("Click to look at this waypoint")
+        tip = self._look.tr("Click to go to its waypoint and its line of the program")
         self.setRowCount(len(self._rows))
         for number, row in enumerate(self._rows):
             cells = (row.word, row.name, row.value, row.limit, row.detail)
@@ -76,8 +80,8 @@ class CheckTable(QTableWidget):
                 item = QTableWidgetItem(text)
                 item.setForeground(self._brush(row, column))
                 item.setTextAlignment(Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft)
-                item.setData(WAYPOINT_ROLE, row.waypoint)
-                item.setToolTip(text if row.waypoint is None else f"{text}\n{tip}")
+                leads = row.waypoint is not None or row.line is not None
+                item.setToolTip(f"{text}\n{tip}" if leads else text)
                 if column == 0 or not row.passed:
                     font = item.font()
                     font.setBold(True)
@@ -95,9 +99,11 @@ class CheckTable(QTableWidget):
         return QBrush(QColor(colour))
 
     def _choose(self, index: QModelIndex) -> None:
-        waypoint = index.data(WAYPOINT_ROLE)
-        if waypoint is not None:
-            self.waypoint_chosen.emit(int(waypoint))
+        row = self._rows[index.row()]
+        if row.line is not None:
+            self.line_chosen.emit(row.file, row.line)
+        if row.waypoint is not None:
+            self.waypoint_chosen.emit(row.waypoint)
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         """Break the lines anew for another width."""

@@ -117,6 +117,7 @@ class ExportDialog(QDialog):
         form.override_wanted.connect(lambda: self._export(override=True))
         self.banner.plan_wanted.connect(self._session.plan)
         self.checks.waypoint_chosen.connect(self._session.set_cursor)
+        self.checks.line_chosen.connect(self._show_line)
         self.file_choice.currentIndexChanged.connect(self._show_file)
         self.report_button.clicked.connect(self.report_requested)
         self.close_button.clicked.connect(self.hide)
@@ -176,6 +177,13 @@ class ExportDialog(QDialog):
     def _show_file(self) -> None:
         index = self.file_choice.currentIndex()
         self.preview.show_text(self._files[index][1] if 0 <= index < len(self._files) else "")
+
+    def _show_line(self, name: str, line: int) -> None:
+        """Mark the line that a check names, in whichever part of the program it is."""
+        names = [one for one, _ in self._files]
+        if name in names:
+            self.file_choice.setCurrentIndex(names.index(name))
+            self.preview.show_line(line)
 
     def _export(self, _checked: bool = False, *, override: bool = False) -> None:
         target = self.exporter.target(override=override)

@@ -3,8 +3,17 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QRect, QSize, Qt
-from PySide6.QtGui import QColor, QFontDatabase, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import QPlainTextEdit, QWidget
+from PySide6.QtGui import (
+    QColor,
+    QFontDatabase,
+    QPainter,
+    QPaintEvent,
+    QResizeEvent,
+    QTextCharFormat,
+    QTextCursor,
+    QTextFormat,
+)
+from PySide6.QtWidgets import QPlainTextEdit, QTextEdit, QWidget
 
 from posopt_gui.look import Look
 
@@ -32,6 +41,7 @@ class ProgramPreview(QPlainTextEdit):
         super().__init__(parent)
         self._look = look
         self._gutter = _Gutter(self)
+        self._marked = 0
         self.setReadOnly(True)
         self.setTabChangesFocus(True)
         self.setLineWrapMode(QPlainTextEdit.LineWrapMode.NoWrap)
@@ -49,16 +59,47 @@ class ProgramPreview(QPlainTextEdit):
         if text == self.toPlainText():
             return
         place = self.verticalScrollBar().value()
+        self._marked = 0
         self.setPlainText(text)
+        self._mark()
         self.verticalScrollBar().setValue(place)
+
+    def show_line(self, number: int) -> None:
+        """Scroll to a line (from 1) and mark it; a number beyond the text marks none."""
+        block = self.document().findBlockByNumber(number - 1)
+        self._marked = number if block.isValid() else 0
+        self._mark()
+        if block.isValid():
+            self.setTextCursor(QTextCursor(block))
+            self.centerCursor()
+
+    @property
+    def marked(self) -> int:
+        """The marked line, from 1; 0 for none."""
+        return self._marked
+
+    def _mark(self) -> None:
+        block = self.document().findBlockByNumber(self._marked - 1)
+        if not self._marked or not block.isValid():
+            self.setExtraSelections([])
+            return
+        theme, mark = self._look.theme, QTextEdit.ExtraSelection()
+        form = QTextCharFormat()
+        form.setBackground(QColor(theme.selection))
+        form.setForeground(QColor(theme.text))
+        form.setProperty(QTextFormat.Property.FullWidthSelection, True)
+        mark.format, mark.cursor = form, QTextCursor(block)
+        self.setExtraSelections([mark])
+        self._gutter.update()
 
     def retranslate(self) -> None:
         """Set the accessible name."""
         self.setAccessibleName(self._look.tr("Text of the program"))
 
     def retheme(self) -> None:
-        """Paint the numbers in the theme's colours."""
+        """Paint the numbers and the mark in the theme's colours."""
         self._gutter.update()
+        self._mark()
 
     def gutter_width(self) -> int:
         """Room for the largest line number."""
@@ -80,6 +121,8 @@ class ProgramPreview(QPlainTextEdit):
             if top + area.height() >= event.rect().top():
                 spot = QRect(0, round(top), width, height)
                 text = str(block.blockNumber() + 1)
+                marked = block.blockNumber() + 1 == self._marked
+                painter.setPen(QColor(theme.accent if marked else theme.muted))
                 painter.drawText(spot, Qt.AlignmentFlag.AlignRight, text)
             block = block.next()
             top += area.height()

@@ -11,7 +11,7 @@ import numpy as np
 
 from posopt_gui.viewmodels.number_words import NOTHING, decimal, signed
 from solver.analysis.metrics import JointMotion, joint_motion
-from solver.transforms import FloatArray
+from solver.transforms import FloatArray, IntArray
 from solver.units import DEG_PER_RAD, MM_PER_M
 
 if TYPE_CHECKING:
@@ -26,6 +26,15 @@ PLAN = "PLAN"
 
 LEAST_SPAN = 4.0
 """Least height of a joint's axis [deg]: a joint at rest is drawn as a flat line."""
+
+NEAR_LIMIT = 0.1
+"""Share of a joint's range: a curve that comes nearer to a limit has the limit on its axis."""
+
+LIMIT_BAND = 0.05
+"""Share of the axis beyond a limit that is on it."""
+
+DWARFING = 3.0
+"""A curve this many times as high as the highest of the others is cut."""
 
 _WAYPOINT = re.compile(r"waypoint (\d+)")
 
@@ -47,6 +56,9 @@ class Track:
         waypoint of a pass, which links lead to.
     motion : JointMotion
         Measures of the joints; for the random lean the mean over all draws.
+    lean : (n,) array [deg]
+    branch : (n,) array of int
+        Branch of the inverse kinematics.
     """
 
     name: str
@@ -55,6 +67,8 @@ class Track:
     manipulability: FloatArray
     steps: FloatArray
     motion: JointMotion
+    lean: FloatArray
+    branch: IntArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,8 +137,9 @@ def broken(values: FloatArray, starts: Iterable[int]) -> tuple[FloatArray, Float
 def sequence_track(problem: PlanningProblem, sequence: Sequence) -> Track:
     """The curves of the shown sequence."""
     return _track(
-        problem, PLAN, sequence.pendant, sequence.clearance, sequence.manipulability, None
-    )
+        problem, PLAN, sequence.pendant, sequence.clearance, sequence.manipulability, None,
+        sequence.angles[:, 0], sequence.branch,
+    )  # fmt: skip
 
 
 def compared_tracks(result: PlanningResult) -> tuple[Track, ...]:
@@ -138,6 +153,7 @@ def compared_tracks(result: PlanningResult) -> tuple[Track, ...]:
 
     tracks = []
     table, robot = result.candidates.nodes, result.problem.robot
+    branches = result.candidates.branches[table.candidate[:, 2]]
     for one in references(result):
         nodes = reference_nodes(result, one)
         if nodes is None:
@@ -147,7 +163,7 @@ def compared_tracks(result: PlanningResult) -> tuple[Track, ...]:
         tracks.append(
             _track(
                 result.problem, one.kind.name, pendant, table.clearance[nodes], dexterity,
-                one.motion,
+                one.motion, result.candidates.lean[nodes], branches[nodes],
             )
         )  # fmt: skip
     return tuple(tracks)
@@ -160,6 +176,8 @@ def _track(
     clearance: FloatArray,
     manipulability: FloatArray,
     motion: JointMotion | None,
+    lean: FloatArray,
+    branch: IntArray,
 ) -> Track:
     steps = np.full_like(pendant, np.nan)
     steps[1:] = np.abs(np.diff(pendant, axis=0)) * DEG_PER_RAD
@@ -171,6 +189,8 @@ def _track(
         manipulability,
         steps,
         motion or joint_motion(pendant),
+        lean * DEG_PER_RAD,
+        branch,
     )
 
 
@@ -178,6 +198,8 @@ def joint_range(
     values: Iterable[FloatArray], limits: FloatArray, *, whole: bool, headroom: float = 0.0
 ) -> tuple[float, float]:
     """Lower and upper end of a joint's axis [deg]: around the curves, or around the limits.
+
+    Around the curves a limit is on the axis, with a band beyond it, where they come near to it.
 
     `headroom` is the share of the axis that is kept free at its top, for words.
     """
@@ -190,7 +212,33 @@ def joint_range(
     missing = max(0.0, LEAST_SPAN - (upper - lower)) / 2.0
     lower, upper = lower - missing, upper + missing
     room = 0.12 * (upper - lower)
-    return _with_headroom(lower - room, upper + room, headroom)
+    bottom, top = lower - room, upper + room
+    near = NEAR_LIMIT * (high - low)
+    if lower - low < near:
+        bottom = min(bottom, low)
+    if high - upper < near:
+        top = max(top, high)
+    band = LIMIT_BAND * (top - bottom)
+    bottom -= band if bottom <= low else 0.0
+    top += band if top >= high else 0.0
+    return _with_headroom(bottom, top, headroom)
+
+
+def step_range(tracks: Iterable[Track]) -> tuple[float, list[tuple[str, float]]]:
+    """Largest step of all joints together that is shown [deg], and who steps farther.
+
+    A reference that steps many times as far as the others does not press them flat.
+    """
+    highs = [
+        (one.name, float(np.nanmax(one.steps.sum(axis=1), initial=0.1)))
+        for one in tracks
+        if len(one.steps)
+    ]
+    sizes = sorted(high for _, high in highs)
+    top = sizes[-1] if sizes else 1.0
+    if len(sizes) > 1 and top > DWARFING * sizes[-2]:
+        top = sizes[-2]
+    return top, [(name, high) for name, high in highs if high > top]
 
 
 def _with_headroom(low: float, high: float, share: float) -> tuple[float, float]:
@@ -266,6 +314,20 @@ def feed_curve(report: ProgramReport | None) -> FeedCurve | None:
     )
 
 
+def feed_words(translate: Translate, curve: FeedCurve, row: int) -> str:
+    """Predicted and asked feed of a move; which joint limits it only where it falls short."""
+    figures = {
+        "slowest": decimal(curve.slowest[row], 1), "fastest": decimal(curve.fastest[row], 1),
+        "asked": decimal(curve.asked[row], 1),
+    }  # fmt: skip
+    if curve.held[row]:
+        return translate("predicted {slowest} to {fastest} mm/s, asked {asked} mm/s", **figures)
+    return translate(
+        "predicted {slowest} to {fastest} mm/s, asked {asked} mm/s, J{joint} limits",
+        **figures, joint=int(curve.joint[row]),
+    )  # fmt: skip
+
+
 def kind_label(translate: Translate, name: str) -> str:
     """What a curve is called in legends and tables."""
     return {
@@ -273,6 +335,16 @@ def kind_label(translate: Translate, name: str) -> str:
         "NOMINAL": translate("nominal lean"),
         "CONSTANT": translate("best constant lean"),
         "RANDOM": translate("random lean"),
+    }[name]
+
+
+def short_label(translate: Translate, name: str) -> str:
+    """The same in one word, where there is little room."""
+    return {
+        PLAN: translate("plan"),
+        "NOMINAL": translate("nominal"),
+        "CONSTANT": translate("constant"),
+        "RANDOM": translate("random"),
     }[name]
 
 

@@ -26,6 +26,7 @@ OVERRIDDEN: Final = "_OVR"
 """Ends the name of a program that is written although a check failed; the writer's too."""
 
 _WAYPOINT = re.compile(r"waypoint (\d+)")
+_LINE = re.compile(r"(?P<file>[\w.\-]+\.\w+):(?P<line>\d+)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +134,7 @@ class Situation:
 
 @dataclass(frozen=True, slots=True)
 class CheckRow:
-    """A check as a line for people; `waypoint` counts from 0."""
+    """A check as a line for people; `waypoint` counts from 0, the `line` of a `file` from 1."""
 
     passed: bool
     word: str
@@ -142,6 +143,8 @@ class CheckRow:
     limit: str
     detail: str
     waypoint: int | None
+    file: str = ""
+    line: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,6 +273,7 @@ def check_rows(checks: Sequence[Check], tr: Translate) -> tuple[CheckRow, ...]:
 
 
 def _row(check: Check, tr: Translate) -> CheckRow:
+    file, line = line_of(check)
     shown, bound = figures(check.value, check.limit)
     limit = check_figure(bound, check.unit, tr)
     if check.assumed:
@@ -282,6 +286,8 @@ def _row(check: Check, tr: Translate) -> CheckRow:
         limit=limit,
         detail=sentence(check.detail, tr),
         waypoint=waypoint_of(check),
+        file=file,
+        line=line,
     )
 
 
@@ -291,6 +297,12 @@ def waypoint_of(check: Check) -> int | None:
         return check.waypoint
     found = _WAYPOINT.search(check.detail)
     return int(found.group(1)) - 1 if found is not None else None
+
+
+def line_of(check: Check) -> tuple[str, int | None]:
+    """File and line (from 1) of the program that a check's sentence names."""
+    found = _LINE.search(check.detail)
+    return (found["file"], int(found["line"])) if found is not None else ("", None)
 
 
 def with_suffix(path: str, post: str) -> str:

@@ -144,8 +144,13 @@ def candidate_sheet(
     slot: int,
     explanation: Explanation | None,
     translate: Translate,
+    *,
+    chosen: bool = False,
 ) -> Sheet:
-    """A candidate under the mouse; its joints are those of the explanation where it is known."""
+    """A candidate under the mouse, or chosen by a click.
+
+    Its joints are those of the explanation where it is known.
+    """
     found = result.candidates
     outcome = Outcome(int(found.outcome[pose.waypoint, orientation, slot]))
     clearance = float(found.clearance[pose.waypoint, orientation, slot])
@@ -158,7 +163,7 @@ def candidate_sheet(
     near = outcome is Outcome.FEASIBLE and clearance < result.problem.settings.safety_distance
     return Sheet(
         _title(result, pose.waypoint, translate),
-        translate("Candidate under the mouse"),
+        translate("Chosen candidate, not on the plan" if chosen else "Candidate under the mouse"),
         translate(UNDER_SAFETY if near else VERDICTS[outcome]),
         outcome,
         near,
@@ -288,7 +293,7 @@ def _filter_row(
         value, margin = f"{clearance_mm(one.margin / MM_PER_M)} mm", f"{signed(beyond, 1)} mm"
         if one.passed and beyond < 0.0:
             state = "near"
-    elif one.filter in (Outcome.MARGIN, Outcome.SELF_COLLISION):
+    elif one.unit == "mm":
         margin = f"{signed(float(np.floor(one.margin * 10.0 + 1e-7) / 10.0), 1)} mm"
     return FilterRow(name, subject, value, margin, state)
 

@@ -123,19 +123,64 @@ def _merged(candidates: CandidateSet, wanted: list[tuple[str, IntArray]]) -> tup
 def drawn_alike(
     lines: Iterable[MapLine], choice: Choice, spins: int, others: int
 ) -> tuple[tuple[MapLine, ...], tuple[NDArray[np.bool_], ...]]:
-    """Lines that look the same on a page as one, and where each of them runs on it."""
+    """Lines that look the same on a page as one, and where each of them runs on it.
+
+    Lines of the same leans on another branch or turn are lines of their own.
+    """
     drawn: list[MapLine] = []
     pages: list[NDArray[np.bool_]] = []
     for line in lines:
         page = line.on_page(choice, spins, others)
         for number, other in enumerate(drawn):
-            if np.array_equal(other.lean, line.lean) and np.array_equal(pages[number], page):
+            if _look_alike(other, line) and np.array_equal(pages[number], page):
                 drawn[number] = replace(other, names=other.names + line.names)
                 break
         else:
             drawn.append(line)
             pages.append(page)
     return tuple(drawn), tuple(pages)
+
+
+def _look_alike(one: MapLine, other: MapLine) -> bool:
+    same_arm = np.array_equal(one.candidate[:, 2:4], other.candidate[:, 2:4])
+    return same_arm and np.array_equal(one.lean, other.lean)
+
+
+def end_words(
+    lines: Iterable[MapLine], branches: IntArray, translate: Translate
+) -> tuple[str, ...]:
+    """What each line is called at its end; with its branches where these tell lines apart."""
+    lines = tuple(lines)
+    passed = [_arms(line, branches) for line in lines]
+    turns = len({arms for arms, _ in passed}) == 1
+    said = []
+    for line, (own, own_turns) in zip(lines, passed, strict=True):
+        words = ", ".join(map(translate, line.names))
+        if len({*passed}) > 1 or len(own) > 1:
+            shown = "/".join(map(str, own))
+            words += " · " + translate("branch {number}", number=shown)
+        if len({*passed}) > 1 and turns:
+            shown = "/".join(str(one + 1) for one in own_turns)
+            words += ", " + translate("turn {number}", number=shown)
+        said.append(words)
+    return tuple(said)
+
+
+def _arms(line: MapLine, branches: IntArray) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Branches and turns in the order in which a line passes them first."""
+    slots = dict.fromkeys(line.candidate[:, 2].tolist())
+    turns = dict.fromkeys(line.candidate[:, 3].tolist())
+    return tuple(int(branches[slot]) for slot in slots), tuple(turns)
+
+
+def places_apart(lines: Iterable[MapLine]) -> tuple[int, ...]:
+    """How many lines before each one have the same leans, and would be covered by it."""
+    before: list[MapLine] = []
+    places = []
+    for line in lines:
+        places.append(sum(np.array_equal(one.lean, line.lean) for one in before))
+        before.append(line)
+    return tuple(places)
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,21 +248,6 @@ def node_edges(
         x.append(np.tile([layer + 1.0, other + 1.0], len(rows)))
         y.append(np.column_stack([np.full(len(rows), own), leans[rows]]).ravel())
     return np.concatenate(x or [np.empty(0)]), np.concatenate(y or [np.empty(0)])
-
-
-def spread(places: FloatArray, least: float, low: float, high: float) -> FloatArray:
-    """Move labels apart to `least` from each other, within low..high, keeping their order."""
-    order = np.argsort(places, kind="stable")
-    moved = np.clip(np.asarray(places, dtype=np.float64)[order], low, high)
-    for number in range(1, len(moved)):
-        moved[number] = max(moved[number], moved[number - 1] + least)
-    limit = high
-    for number in range(len(moved) - 1, -1, -1):
-        moved[number] = min(moved[number], limit)
-        limit = moved[number] - least
-    spaced = np.empty_like(moved)
-    spaced[order] = moved
-    return spaced
 
 
 def scheme_search(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from posopt_gui.viewmodels.branch_breaks import branch_changes
 from posopt_gui.viewmodels.map_colours import (
     CLASS_RANK,
     NO_VALUE_INDEX,
@@ -355,6 +356,11 @@ class MapModel:
         """First waypoint (from 0) of every pass but the first."""
         passes = self.candidates.problem.toolpath.passes
         return tuple(int(start) for start in np.cumsum([len(one) for one in passes])[:-1])
+
+    def branch_breaks(self, slot: NDArray[np.signedinteger]) -> FloatArray:
+        """(k,) places, in waypoints from 1, where a line's branch changes within a pass."""
+        gaps = branch_changes(slot, self.candidates.problem.toolpath.pass_index)
+        return gaps.astype(np.float64) + 1.5
 
     def known_values(self, node: int) -> dict[Layer, float]:
         """Values of a node that take no computation."""

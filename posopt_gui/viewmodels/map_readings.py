@@ -5,39 +5,34 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from posopt_gui.viewmodels.map_colours import CLASS_LABELS, Layer
 from posopt_gui.viewmodels.map_model import PERCENT, MapModel, Reading
-from posopt_gui.viewmodels.number_words import clearance_mm, decimal, signed, subject_words
+from posopt_gui.viewmodels.number_words import clearance_mm, decimal, signed
 from solver.analysis.check import down_mm
-from solver.candidates.outcomes import Outcome
-from solver.units import MM, MM_PER_M
+from solver.units import MM
 
 if TYPE_CHECKING:
     from solver.candidates.explain import Explanation
-    from solver.candidates.margins import FilterMargin
 
 Translate = Callable[..., str]
-
-FILTER_LABELS: Final = {
-    Outcome.UNREACHABLE: "Reach",
-    Outcome.JOINT_LIMIT: "Joint limit",
-    Outcome.SINGULAR: "Manipulability",
-    Outcome.COLLISION: "Clearance",
-    Outcome.MARGIN: "Tool's margin",
-    Outcome.SELF_COLLISION: "Own bodies",
-}
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A line of the card: `passed` is None where nothing was checked."""
+    """A line of the card: `passed` is None where nothing was checked.
+
+    As in the inspector, `value` is what was found and `margin` what is left to the limit; `near`
+    is what passed, but keeps less than the safety distance.
+    """
 
     label: str
     value: str
     subject: str = ""
     passed: bool | None = None
+    margin: str = ""
+    near: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +86,7 @@ def card(
         )
     rows = _search_rows(values, tr)
     if explanation is not None:
-        rows += [_filter_row(one, tr) for one in explanation.filters]
+        rows += _filter_rows(model, explanation, tr)
     else:
         rows += _array_rows(model, reading, values, tr)
     return Card(title, posture, tr(CLASS_LABELS[reading.kind]), tuple(rows))
@@ -118,22 +113,31 @@ def _array_rows(
     """What is known at once, without asking the solver."""
     rows = []
     if Layer.CLEARANCE in values:
-        settings = model.candidates.problem.settings
-        met = values[Layer.CLEARANCE] >= settings.safety_distance * MM_PER_M
-        rows.append(
-            Row(tr("Clearance"), f"{clearance_mm(values[Layer.CLEARANCE] * MM)} mm", "", met)
-        )
+        safety = model.candidates.problem.settings.safety_distance
+        found = values[Layer.CLEARANCE] * MM
+        beyond = f"{signed(down_mm(found - safety), 1)} mm"
+        value = f"{clearance_mm(found)} mm"
+        rows.append(Row(tr("Clearance"), value, "", True, beyond, near=found < safety))
     if Layer.MANIPULABILITY in values:
-        rows.append(Row(tr("Manipulability"), f"{values[Layer.MANIPULABILITY]:.4f} m³"))
+        rows.append(Row(tr("Manipulability"), f"{decimal(values[Layer.MANIPULABILITY], 4)} m³"))
     if Layer.LIMIT_MARGIN in values:
-        rows.append(Row(tr("Joint limit"), f"{signed(values[Layer.LIMIT_MARGIN], 1)}°"))
+        margin = f"{signed(values[Layer.LIMIT_MARGIN], 2)}°"
+        rows.append(Row(tr("Joint limits"), "", margin=margin))
     return rows
 
 
-def _filter_row(one: FilterMargin, tr: Translate) -> Row:
-    unit = {"deg": "°", "mm": " mm", "m^3": " m³"}.get(one.unit, f" {one.unit}")
-    decimals = {"deg": 1, "mm": 1}.get(one.unit, 4)
-    margin = down_mm(one.margin * MM) if one.unit == "mm" else one.margin
-    subject = "" if one.filter is Outcome.SINGULAR else subject_words(one.subject, tr)
-    label = tr(FILTER_LABELS[one.filter])
-    return Row(label, f"{signed(margin, decimals)}{unit}", subject, one.passed)
+def _filter_rows(model: MapModel, explanation: Explanation, tr: Translate) -> list[Row]:
+    """Every filter as the inspector has it."""
+    from posopt_gui.viewmodels.inspector_model import filter_rows  # noqa: PLC0415
+
+    return [
+        Row(
+            one.name,
+            one.value,
+            one.subject,
+            one.state != "bad",
+            one.margin,
+            near=one.state == "near",
+        )
+        for one in filter_rows(model.candidates.problem, explanation, tr)
+    ]

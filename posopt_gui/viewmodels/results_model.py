@@ -11,11 +11,15 @@ import numpy as np
 from posopt_gui.viewmodels.check_figures import check_figure, figures
 from posopt_gui.viewmodels.check_sentences import sentence
 from posopt_gui.viewmodels.curves_model import Track, kind_label
+from posopt_gui.viewmodels.export_model import waypoint_of
 from posopt_gui.viewmodels.number_words import NOTHING, clearance_mm, decimal, signed
 from posopt_gui.viewmodels.trouble_model import Trouble
+from posopt_gui.viewmodels.verdicts import Note
 from solver.analysis.check import Check
 from solver.analysis.metrics import lean_edge_share
 from solver.candidates.outcomes import Outcome
+from solver.kinematics.configuration import config_string
+from solver.transforms import FloatArray, IntArray
 from solver.units import DEG_PER_RAD, MM_PER_M
 
 if TYPE_CHECKING:
@@ -54,15 +58,6 @@ class SchemeTable:
     best: frozenset[tuple[int, int]]
 
 
-@dataclass(frozen=True, slots=True)
-class Note:
-    """A message: severity 'info', 'warning' or 'error', and the waypoint (from 0) it is about."""
-
-    severity: str
-    text: str
-    waypoint: int | None = None
-
-
 def totals(
     result: PlanningResult,
     sequence: Sequence,
@@ -83,14 +78,15 @@ def totals(
             nearest,
         ),
         Total(translate("Mean clearance"), f"{clearance_mm(sequence.mean_clearance)} mm"),
-        Total(translate("Lean"), _lean_range(sequence)),
+        Total(translate("Lean"), _lean_range(sequence.angles[:, 0] * DEG_PER_RAD)),
         Total(translate("Cumulative change"), f"{decimal(_change(sequence), 1)}°"),
-        Total(translate("Branches"), _branches(sequence)),
+        Total(translate("Branch"), _branches(problem, sequence.branch, sequence.pendant)),
     ]
     if answer is not None and answer.sequence is not None:
         rows.insert(1, Total(translate("Price of your wishes"), _price(result, answer)))
     if report is not None and report.cycle is not None:
-        rows.append(Total(translate("Time, estimated"), f"{decimal(report.cycle.total, 1)} s"))
+        total = f"{decimal(report.cycle.total, 1)} s"
+        rows.append(Total(translate("Cycle with links, estimated"), total))
     return tuple(rows)
 
 
@@ -111,8 +107,8 @@ def _price(result: PlanningResult, answer: Replanned) -> str:
     return signed(answer.price, 5) + share
 
 
-def _lean_range(sequence: Sequence) -> str:
-    lean = sequence.angles[:, 0] * DEG_PER_RAD
+def _lean_range(lean: FloatArray) -> str:
+    """Leans (n,) [deg] from the least to the largest."""
     low, high = decimal(float(lean.min()), 2), decimal(float(lean.max()), 2)
     return f"{low}°" if low == high else f"{low}° … {high}°"
 
@@ -121,8 +117,11 @@ def _change(sequence: Sequence) -> float:
     return float(np.abs(np.diff(sequence.pendant, axis=0)).sum()) * DEG_PER_RAD
 
 
-def _branches(sequence: Sequence) -> str:
-    return ", ".join(str(one) for one in sorted(set(sequence.branch.tolist())))
+def _branches(problem: PlanningProblem, branch: IntArray, pendant: FloatArray) -> str:
+    """Each branch that (n,) waypoints pass, with the letters of its CONFIG."""
+    numbers, first = np.unique(branch, return_index=True)
+    words = (config_string(problem.robot, pendant[one]).split(",")[0] for one in first)
+    return ", ".join(f"{number} ({word})" for number, word in zip(numbers, words, strict=True))
 
 
 def scheme_table(
@@ -139,7 +138,7 @@ def scheme_table(
     heads = [translate("with your wishes" if one == WISHES else one) for one in found]
     heads += [kind_label(translate, one.name) for one in references]
     chosen = list(found.values())
-    blank = ["" for _ in references]
+    nothing = [NOTHING for _ in references]
     ranges = result.problem.robot.cost_ranges
     costs = [one.joint_cost for one in chosen]
     costs += [_reference_cost(result.problem, one, ranges) for one in references]
@@ -152,15 +151,15 @@ def scheme_table(
     rows: list[tuple[str, list[str]]] = [
         (translate("Joint cost"), [decimal(one, 5) for one in costs]),
         (translate("Against the best"), _against_best(costs)),
-        (translate("Objective"), [*(decimal(one.cost, 5) for one in chosen), *blank]),
+        (translate("Objective"), [*(decimal(one.cost, 5) for one in chosen), *nothing]),
         (translate("Least clearance, mm"), [clearance_mm(one) for one in least]),
         (translate("Mean clearance, mm"), [clearance_mm(one) for one in mean]),
         (translate("Cumulative change, °"), [decimal(one, 1) for one in change]),
-        (translate("Lean"), [*map(_lean_range, chosen), *blank]),
-        (translate("Branches"), [*map(_branches, chosen), *blank]),
+        (translate("Lean"), _leans(chosen, references)),
+        (translate("Branch"), _all_branches(result.problem, chosen, references)),
         (
             translate("Expanded nodes"),
-            [*(f"{one.expanded:,}" if one.expanded else NOTHING for one in chosen), *blank],
+            [*(f"{one.expanded:,}" if one.expanded else NOTHING for one in chosen), *nothing],
         ),
     ]
     first = {0: int(np.nanargmin(costs)), 3: int(np.nanargmax(least))}
@@ -172,9 +171,20 @@ def scheme_table(
         for column, text in enumerate(rows[row][1])
         if text == rows[row][1][winner]
     }
-    return SchemeTable(
-        tuple(heads), tuple((label, tuple(texts)) for label, texts in rows), frozenset(best)
-    )
+    shown = tuple((label, tuple(texts)) for label, texts in rows)
+    return SchemeTable(tuple(heads), shown, frozenset(best))
+
+
+def _leans(chosen: Iterable[Sequence], references: Iterable[Track]) -> list[str]:
+    own = [one.angles[:, 0] * DEG_PER_RAD for one in chosen]
+    return [_lean_range(one) for one in [*own, *(one.lean for one in references)]]
+
+
+def _all_branches(
+    problem: PlanningProblem, chosen: Iterable[Sequence], references: Iterable[Track]
+) -> list[str]:
+    own = [_branches(problem, one.branch, one.pendant) for one in chosen]
+    return own + [_branches(problem, one.branch, one.joints / DEG_PER_RAD) for one in references]
 
 
 def _reference_cost(problem: PlanningProblem, track: Track, ranges: np.ndarray) -> float:
@@ -203,7 +213,9 @@ def notes(
         found += [Note("error", f"{trouble.headline} {one.text}", one.waypoint)
                   for one in trouble.causes]  # fmt: skip
     if report is not None:
-        found += [Note("error", check_words(one, translate), one.waypoint) for one in report.failed]
+        found += [
+            Note("error", check_words(one, translate), waypoint_of(one)) for one in report.failed
+        ]
     if result is not None and sequence is not None:
         found += _plan_notes(result, sequence, translate)
         problem = result.problem

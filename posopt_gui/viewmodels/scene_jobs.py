@@ -24,4 +24,5 @@ def build_probe(result: PlanningResult) -> PoseProbe:
 
     probe = PoseProbe(result.problem, result.candidates.scene)
     probe.measure(result.sequence.pendant[0], 0)
+    probe.prepare()
     return probe

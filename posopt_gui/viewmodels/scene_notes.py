@@ -3,18 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
+from posopt_gui.viewmodels.inspector_model import UNDER_SAFETY, VERDICTS
+from posopt_gui.viewmodels.number_words import decimal
 from posopt_gui.viewmodels.scene_model import CellModel
 from posopt_gui.viewmodels.scene_probe import PoseReport, Touch
-from solver.units import MM_PER_M
+from solver.candidates.outcomes import Outcome
+from solver.units import DEG_PER_RAD, MM_PER_M
+
+if TYPE_CHECKING:
+    from solver.analysis.result import PlanningResult
 
 Translate = Callable[..., str]
+
+ROUND = 1e-9
+"""An angle that is nearer to a whole number than this is shown as one [deg]."""
 
 PATCH_WORDS = {
     Touch.TOO_DEEP: "Contact: {depth} mm into the {body}, more than allowed",
     Touch.ANOTHER: "Contact: the tool enters the {body}, which it must not touch",
 }
 """What is said of contact that is not allowed."""
+
+
+def candidate_line(
+    result: PlanningResult, waypoint: int, orientation: int, slot: int, tr: Translate
+) -> str:
+    """Which cell of the map is looked at, and what became of that candidate."""
+    found = result.candidates
+    cell = waypoint, orientation, slot
+    outcome = Outcome(int(found.outcome[cell]))
+    verdict = VERDICTS[outcome]
+    safety = result.problem.settings.safety_distance
+    if outcome is Outcome.FEASIBLE and float(found.clearance[cell]) < safety:
+        verdict = UNDER_SAFETY
+    lean = float(found.orientations[orientation, 0]) * DEG_PER_RAD
+    return tr(
+        "Candidate at waypoint {number}, lean {lean}°: {verdict}",
+        number=waypoint + 1,
+        lean=decimal(lean, 0 if abs(lean - round(lean)) < ROUND else 2),
+        verdict=tr(verdict),
+    )
 
 
 def note_lines(

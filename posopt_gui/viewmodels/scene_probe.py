@@ -7,8 +7,10 @@ from enum import Enum
 
 import numpy as np
 
-from solver.analysis.check import down_mm
+from posopt_gui.viewmodels.number_words import clearance_mm
+from solver.candidates.explain import collision_margins
 from solver.candidates.generate import touch_numbers
+from solver.candidates.outcomes import Outcome
 from solver.candidates.postures import check_exact_postures
 from solver.collision.distance import PackedShape, pack_shape
 from solver.collision.kernels_distance import convex_distance
@@ -76,7 +78,7 @@ class PoseReport:
     @property
     def millimetres(self) -> str:
         """The clearance for people, rounded down."""
-        return f"{down_mm(self.clearance):.1f} mm"
+        return f"{clearance_mm(self.clearance)} mm"
 
 
 class PoseProbe:
@@ -105,18 +107,36 @@ class PoseProbe:
         """Whether a pose takes well under a millisecond; with meshes it takes several."""
         return not self.scene.meshes
 
+    def prepare(self) -> None:
+        """Have the kernels ready for poses that collide too."""
+        self._deepest(np.zeros(6), 0, np.full((2, 3), np.nan))
+
     def measure(self, joints: FloatArray, waypoint: int) -> PoseReport:
         """Measure a pose of pendant joints (6,) [rad] on the pass of a waypoint."""
         touch = self._touch[waypoint : waypoint + 1]
         checks = check_exact_postures(self.problem.robot, self.scene, joints[None], touch)
         clearance, points = float(checks.clearance[0]), checks.points[0]
-        known = bool(np.isfinite(points).all()) and any(checks.bodies[0])
-        return PoseReport(
-            clearance,
-            checks.bodies[0],
-            points if known else None,
-            self._patches(joints, waypoint),
-        )
+        bodies = checks.bodies[0]
+        if clearance <= 0.0:
+            # Where bodies meet, the check of postures stops; a person asks how deep they are.
+            clearance, bodies, points = self._deepest(joints, waypoint, points)
+        known = bool(np.isfinite(points).all()) and any(bodies)
+        patches = self._patches(joints, waypoint)
+        return PoseReport(clearance, bodies, points if known else None, patches)
+
+    def _deepest(
+        self, joints: FloatArray, waypoint: int, points: FloatArray
+    ) -> tuple[float, tuple[str, str], FloatArray]:
+        """Signed clearance of a pose that collides, with its two bodies and nearest points."""
+        robot = self.problem.robot
+        model = robot.model_from_pendant @ joints
+        arm, touch = np.array(robot.arm_lengths), int(self._touch[waypoint])
+        clearance, margins = collision_margins(self.scene, arm, model, touch)
+        for one in margins:
+            if one.filter is Outcome.COLLISION:
+                moving, _, fixed = one.subject.partition(" and ")
+                return clearance, (moving, fixed), points if one.points is None else one.points
+        return clearance, ("", ""), points
 
     def _patches(self, joints: FloatArray, waypoint: int) -> tuple[ContactPatch, ...]:
         number = int(self.problem.toolpath.pass_index[waypoint])

@@ -8,20 +8,31 @@ from PySide6.QtCore import QPointF, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QIcon, QPainter, QPixmap
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QToolButton, QWidget
 
-from posopt_gui.theme import Theme
-from posopt_gui.viewmodels.curves_model import PLAN, kind_label
+from posopt_gui.theme import LIGHT, Theme
+from posopt_gui.viewmodels.curves_model import PLAN, kind_label, short_label
 from posopt_gui.views.curve_plots import line_pen
 
 SAMPLE = QSize(24, 12)
 """Size of the sample of a line [px]."""
 
+LOW_SAMPLE = QSize(24, 4)
+"""The same above its name."""
+
+BESIDE = 10
+"""Room beside a name below its sample: border and padding [px]."""
+
+UNBOUND = 16_777_215
+"""Qt's largest width of a widget [px]."""
+
+ALL_JOINTS = "J1–J6"
+
 REFERENCES = ("NOMINAL", "CONSTANT", "RANDOM")
 
 
-def line_sample(name: str, theme: Theme) -> QPixmap:
+def line_sample(name: str, theme: Theme, size: QSize = SAMPLE) -> QPixmap:
     """A short piece of a curve's line."""
     scale = 3
-    pixmap = QPixmap(SAMPLE * scale)
+    pixmap = QPixmap(size * scale)
     pixmap.fill(Qt.GlobalColor.transparent)
     painter = QPainter(pixmap)
     painter.scale(scale, scale)
@@ -29,8 +40,8 @@ def line_sample(name: str, theme: Theme) -> QPixmap:
     pen = line_pen(name, theme)
     pen.setCosmetic(False)
     painter.setPen(pen)
-    middle = SAMPLE.height() / 2.0
-    painter.drawLine(QPointF(1.0, middle), QPointF(SAMPLE.width() - 1.0, middle))
+    middle = size.height() / 2.0
+    painter.drawLine(QPointF(1.0, middle), QPointF(size.width() - 1.0, middle))
     painter.end()
     pixmap.setDevicePixelRatio(scale)
     return pixmap
@@ -44,6 +55,8 @@ class CurveLegend(QWidget):
     def __init__(self, translate: Callable[..., str], parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._tr = translate
+        self._theme: Theme = LIGHT
+        self._sample = SAMPLE
         self._plan, self._plan_sample = QLabel(), QLabel()
         self._references = {name: QToolButton() for name in REFERENCES}
         self._menu_button = QToolButton()
@@ -123,18 +136,31 @@ class CurveLegend(QWidget):
         self._menu_button.setVisible(shown)
 
     def fit(self, room: int) -> None:
-        """Name the lines as far as there is room [px]; else their samples and tool tips remain."""
-        beside, only = (
-            Qt.ToolButtonStyle.ToolButtonTextBesideIcon,
-            Qt.ToolButtonStyle.ToolButtonIconOnly,
-        )
-        for plan, style in ((True, beside), (False, beside), (False, only)):
+        """Name the lines beside their samples where there is room [px], else below them."""
+        styles = Qt.ToolButtonStyle
+        beside, under = styles.ToolButtonTextBesideIcon, styles.ToolButtonTextUnderIcon
+        for plan, style in (
+            (True, beside), (False, beside), (False, under), (False, styles.ToolButtonIconOnly),
+        ):  # fmt: skip
             self._plan.setVisible(plan)
             self._plan_sample.setVisible(plan)
             for button in self._references.values():
                 button.setToolButtonStyle(style)
+                words = button.fontMetrics().horizontalAdvance(button.text())
+                # Qt keeps more room around a name than it needs.
+                button.setMaximumWidth(words + BESIDE if style is under else UNBOUND)
+            self._menu_button.setText(ALL_JOINTS if style is beside else "J")
+            size = LOW_SAMPLE if style is under else SAMPLE
+            if size != self._sample:
+                self._sample = size
+                self._show_samples()
             if self._row.sizeHint().width() <= room:
                 break
+
+    def _show_samples(self) -> None:
+        for name, button in self._references.items():
+            button.setIconSize(self._sample)
+            button.setIcon(QIcon(line_sample(name, self._theme, self._sample)))
 
     def _on_joint(self) -> None:
         if not self.joints:
@@ -155,13 +181,12 @@ class CurveLegend(QWidget):
                 "One draw of a random lean at every waypoint; measures are means of 100 draws"
             ),
         }
-        short = {"NOMINAL": tr("nominal"), "CONSTANT": tr("constant"), "RANDOM": tr("random")}
         for name, button in self._references.items():
             label = kind_label(tr, name)
-            button.setText(short[name])
+            button.setText(short_label(tr, name))
             button.setToolTip(f"{tr('Compare with')}: {label}\n{tips[name]}")
             button.setAccessibleName(f"{tr('Compare with')}: {label}")
-        self._menu_button.setText("J1–J6")
+        self._menu_button.setText(ALL_JOINTS)
         self._menu_button.setToolTip(tr("Choose joints and axes"))
         self._menu_button.setAccessibleName(tr("Choose joints and axes"))
         self._all.setText(tr("All joints"))
@@ -170,9 +195,9 @@ class CurveLegend(QWidget):
 
     def set_theme(self, theme: Theme) -> None:
         """Set all colours again."""
+        self._theme = theme
         self._plan_sample.setPixmap(line_sample(PLAN, theme))
-        for name, button in self._references.items():
-            button.setIcon(QIcon(line_sample(name, theme)))
+        self._show_samples()
         self.setStyleSheet(
-            'QToolButton { padding: 2px 5px; } QToolButton[popupMode="2"] { padding-right: 18px; }'
+            'QToolButton { padding: 2px 3px; } QToolButton[popupMode="2"] { padding-right: 18px; }'
         )

@@ -11,7 +11,15 @@ from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QWidget
 
 from posopt_gui.theme import Theme
-from posopt_gui.viewmodels.curves_model import PLAN, axis_place, broken, waypoint_axis
+from posopt_gui.viewmodels.curves_model import (
+    PLAN,
+    axis_place,
+    axis_ticks,
+    broken,
+    free_side,
+    joint_range,
+    waypoint_axis,
+)
 from solver.transforms import FloatArray
 
 LEFT_AXIS = 56
@@ -22,6 +30,18 @@ GAUGE = 12
 
 HEADROOM = 19
 """Height of the words in a plot's upper left corner [px]."""
+
+LOW_ROW = 48
+"""A lower row keeps no room for its words [px]."""
+
+BOTTOM_AXIS = 20
+"""Height of the numbers below the last row [px]."""
+
+TICK_ROOM = 18
+"""Height that a number at an axis takes [px]."""
+
+LIMIT_COLOUR = "#E69F00"
+"""Beyond a joint limit, as on the map."""
 
 MANY = 1_500
 """From so many waypoints on lines are thinned and drawn without smoothing."""
@@ -114,6 +134,10 @@ class WaypointPlot(pg.PlotWidget):
         plot.getViewBox().sigResized.connect(self._put_level_words)
         plot.addItem(self._cursor, ignoreBounds=True)
         self._cursor.sigDragged.connect(lambda line: self.place_wanted.emit(line.value()))
+        # Let go between two waypoints it goes to the nearer one, which all numbers are about.
+        self._cursor.sigPositionChangeFinished.connect(
+            lambda line: self.place_wanted.emit(round(line.value()))
+        )
         self.scene().sigMouseClicked.connect(self._on_click)
         box = plot.getViewBox()
         box.disableAutoRange()
@@ -293,8 +317,31 @@ class WaypointPlot(pg.PlotWidget):
         self._level_words.setText(f"– – {label}", QColor(colour))
         self._put_level_words()
 
+    def set_beyond(self, words: str, colour: str) -> None:
+        """Name in the right corner what reaches beyond the axis, in plots without a level."""
+        self._level_words.setText(words, QColor(colour))
+        self._put_level_words()
+
     def _put_level_words(self, *_: object) -> None:
         self._level_words.setPos(QPointF(self.getPlotItem().getViewBox().width() - 3.0, 0.0))
+
+
+def fit_joint(
+    plot: WaypointPlot, curves: list[FloatArray], limits: FloatArray, *, whole: bool
+) -> None:
+    """Choose a joint's axis so that the words and the curves do not meet."""
+    # In a low row the words hide the beginning of a curve rather than take half of the row.
+    headroom = 0.0 if plot.height() < LOW_ROW else plot.headroom
+    low, high = joint_range(curves, limits, whole=whole)
+    side = free_side(curves, low, high, height=plot.headroom)
+    top = high
+    if not side:
+        low, high = joint_range(curves, limits, whole=whole, headroom=headroom)
+        top = high - headroom * (high - low)
+    plot.put_readout(side or "top")
+    plot.setYRange(low, high, padding=0.0)
+    room = plot.getPlotItem().getViewBox().height() * (top - low) / (high - low)
+    plot.set_ticks(axis_ticks(low, top, max(int(room / TICK_ROOM), 1)))
 
 
 def step_words(steps: FloatArray) -> str:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QEvent, QObject, Qt, Signal
 from PySide6.QtGui import QResizeEvent, QShowEvent
 from PySide6.QtWidgets import (
     QFrame,
@@ -22,20 +22,27 @@ from posopt_gui.controllers.session import Session
 from posopt_gui.viewmodels.curves_model import (
     PLAN,
     Track,
-    axis_ticks,
     first_of_passes,
-    free_side,
-    joint_range,
     joint_words,
+    kind_label,
     limit_words,
     measure_rows,
     place_on_path,
     sequence_track,
+    step_range,
 )
 from posopt_gui.viewmodels.number_words import decimal
 from posopt_gui.views.change_bars import ChangeBars
 from posopt_gui.views.curve_legend import CurveLegend
-from posopt_gui.views.curve_plots import JOINT_COLOURS, PlotStock, WaypointPlot, step_words
+from posopt_gui.views.curve_plots import (
+    BOTTOM_AXIS,
+    JOINT_COLOURS,
+    LIMIT_COLOUR,
+    PlotStock,
+    WaypointPlot,
+    fit_joint,
+    step_words,
+)
 from posopt_gui.views.feed_plot import FeedPanel
 from posopt_gui.views.limit_gauge import LimitGauge
 from posopt_gui.views.measures_table import MeasuresTable
@@ -47,18 +54,6 @@ ROW = 18
 
 GAUGED, PLAIN = 6, 4
 """Plots with a gauge, of the joints, and without."""
-
-LOW_ROW = 48
-"""A lower row keeps no room for its words [px]."""
-
-BOTTOM_AXIS = 20
-"""Height of the numbers below the last row [px]."""
-
-TICK_ROOM = 18
-"""Height that a number at an axis takes [px]."""
-
-LIMIT_COLOUR = "#E69F00"
-"""Beyond a joint limit, as on the map."""
 
 
 class CurvesView(QWidget):
@@ -133,6 +128,7 @@ class CurvesView(QWidget):
         self._scroll.setWidgetResizable(True)
         self._scroll.setFrameShape(QFrame.Shape.NoFrame)
         self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._scroll.viewport().installEventFilter(self)
         self.tabs = QTabWidget()
         self.tabs.setDocumentMode(True)
         self.tabs.tabBar().setDrawBase(False)
@@ -232,6 +228,16 @@ class CurvesView(QWidget):
         self._fit_legend()
         self._drawing.soon()
 
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
+        """Share the height among the joints anew once they are laid out."""
+        if (
+            isinstance(event, QResizeEvent)
+            and event.type() is QEvent.Type.Resize
+            and event.size().height() != event.oldSize().height()
+        ):
+            self._drawing.soon()
+        return super().eventFilter(watched, event)
+
     def _fit_legend(self) -> None:
         self.legend.fit(self.width() - self.tabs.tabBar().sizeHint().width() - 8)
 
@@ -307,12 +313,13 @@ class CurvesView(QWidget):
             curves = {one.name: one.joints[:, joint] for one in tracks}
             plot.set_curves(curves, self._starts, theme)
             if result is None or self._plan is None:
+                # The gauge stays, empty: without its width the plots would leave the map's axis.
                 plot.set_ticks(())
-                self.gauges[joint].hide()
+                self.gauges[joint].clear()
                 continue
             limits = result.problem.joint_limits[joint] * DEG_PER_RAD
             plot.set_bands((float(limits[0]), float(limits[1])), LIMIT_COLOUR)
-            self._fit_joint(plot, list(curves.values()), limits)
+            fit_joint(plot, list(curves.values()), limits, whole=self.legend.whole_limits)
             self.gauges[joint].set_used(limits, self._plan.joints[:, joint])
         shown = [plot for joint, plot in enumerate(self.joint_plots) if joint in self.legend.joints]
         room = self._scroll.viewport().height() - BOTTOM_AXIS
@@ -324,40 +331,25 @@ class CurvesView(QWidget):
             plot.setMinimumHeight(row + (BOTTOM_AXIS if last else 0))
             gauge.set_below(float(BOTTOM_AXIS if last else 0))
 
-    def _fit_joint(self, plot: WaypointPlot, curves: list[np.ndarray], limits: np.ndarray) -> None:
-        """Choose the axis so that the words and the curves do not meet."""
-        whole, headroom = self.legend.whole_limits, plot.headroom
-        if plot.height() < LOW_ROW:
-            # The words then hide the beginning of a curve rather than take half of the row.
-            headroom = 0.0
-        low, high = joint_range(curves, limits, whole=whole)
-        side = free_side(curves, low, high, height=plot.headroom)
-        top = high
-        if not side:
-            low, high = joint_range(curves, limits, whole=whole, headroom=headroom)
-            top = high - headroom * (high - low)
-        plot.put_readout(side or "top")
-        plot.setYRange(low, high, padding=0.0)
-        room = plot.getPlotItem().getViewBox().height() * (top - low) / (high - low)
-        plot.set_ticks(axis_ticks(low, top, max(int(room / TICK_ROOM), 1)))
-
     def _draw_clearance(self) -> None:
-        theme, result = self._session.look.theme, self._session.result
-        plot = self.clearance_plot
+        result = self._session.result
         curves = {one.name: one.clearance for one in self._tracks()}
-        plot.set_curves(curves, self._starts, theme)
         level = result.problem.settings.safety_distance * MM_PER_M if result else None
         words = self._tr("safety distance {value} mm", value=f"{level or 0.0:.1f}")
-        plot.set_level(level, theme.error, words)
-        plot.fit_from_zero(curves.values(), level)
+        self._draw_level(self.clearance_plot, curves, level, words)
 
     def _draw_manipulability(self) -> None:
-        theme, result = self._session.look.theme, self._session.result
-        plot = self.manipulability_plot
+        result = self._session.result
         curves = {one.name: one.manipulability for one in self._tracks()}
-        plot.set_curves(curves, self._starts, theme)
         level = result.problem.settings.manipulability if result else None
         words = self._tr("least allowed {value} m³", value=f"{level or 0.0:g}")
+        self._draw_level(self.manipulability_plot, curves, level, words)
+
+    def _draw_level(
+        self, plot: WaypointPlot, curves: dict[str, np.ndarray], level: float | None, words: str
+    ) -> None:
+        theme = self._session.look.theme
+        plot.set_curves(curves, self._starts, theme)
         plot.set_level(level, theme.error, words)
         plot.fit_from_zero(curves.values(), level)
 
@@ -367,8 +359,10 @@ class CurvesView(QWidget):
         totals = {one.name: one.steps.sum(axis=1) for one in tracks if one.name != PLAN}
         plot.set_stack(self._plan.steps if self._plan else np.zeros((0, 6)), JOINT_COLOURS)
         plot.set_curves(totals, self._starts, theme)
-        highs = [np.nanmax(one.steps.sum(axis=1), initial=0.1) for one in tracks if len(one.steps)]
-        plot.setYRange(0.0, 1.25 * max(map(float, highs), default=1.0), padding=0.0)
+        top, beyond = step_range(tracks)
+        plot.setYRange(0.0, 1.25 * top, padding=0.0)
+        words = ", ".join(f"{kind_label(self._tr, name)} ↑ {high:.1f}°" for name, high in beyond)
+        plot.set_beyond(words, theme.muted)
 
     def _on_place(self, place: float) -> None:
         """Follow the place; words that are hidden do so when their tab is opened."""

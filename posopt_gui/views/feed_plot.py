@@ -9,7 +9,7 @@ from PySide6.QtGui import QColor, QShowEvent
 from PySide6.QtWidgets import QLabel, QPushButton, QStackedWidget, QVBoxLayout, QWidget
 
 from posopt_gui.controllers.session import Session
-from posopt_gui.viewmodels.curves_model import FeedCurve, feed_curve
+from posopt_gui.viewmodels.curves_model import FeedCurve, feed_curve, feed_words
 from posopt_gui.views.curve_plots import WaypointPlot
 
 
@@ -130,9 +130,4 @@ class FeedPanel(QStackedWidget):
             self.plot.set_readout(number)
             return
         row = int(found[0])
-        words = self._tr(
-            "predicted {slowest} to {fastest} mm/s, asked {asked} mm/s, J{joint} limits",
-            slowest=f"{curve.slowest[row]:.1f}", fastest=f"{curve.fastest[row]:.1f}",
-            asked=f"{curve.asked[row]:.1f}", joint=int(curve.joint[row]),
-        )  # fmt: skip
-        self.plot.set_readout(f"{number} · {words}")
+        self.plot.set_readout(f"{number} · {feed_words(self._tr, curve, row)}")

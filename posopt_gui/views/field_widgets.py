@@ -260,9 +260,8 @@ class FieldRow(QWidget):
             self.editors.append(button)
 
     def _choice(self, one: Any) -> tuple[Any, str, str]:
-        if one.plain:
-            return one.value, one.label, one.detail
-        return one.value, self._tr(one.label), self._tr(one.detail) if one.detail else ""
+        label = one.label if one.plain else self._tr(one.label)
+        return one.value, label, self._tr(one.detail) if one.detail else ""
 
     def _set_forms(self) -> None:
         field = self.field

@@ -13,6 +13,9 @@ from posopt_gui.views.setup_view import SetupView
 
 BEAM_KEY = "beam.section"
 
+CHOICE = 96
+"""Height of the head of the section Beam and of the fields of standard and section [px]."""
+
 
 def make_hints(
     window: QWidget,
@@ -29,9 +32,10 @@ def make_hints(
         if session.result is None or not setup.isVisible():
             return None
         box = setup.section("beam")
-        height = min(box.height() // 2, 60)
-        place = QPoint(setup.width() - 2, box.mapTo(setup, QPoint(0, height)).y())
-        return Spot(setup, place, Side.RIGHT) if 0 < place.y() < setup.height() else None
+        # Below the choice, over the drawing: beside it the hint would hide a third of the 3D view.
+        height = min(box.height() // 2, CHOICE)
+        place = QPoint(setup.width() // 2, box.mapTo(setup, QPoint(0, height)).y())
+        return Spot(setup, place, Side.BELOW) if 0 < place.y() < setup.height() else None
 
     def line() -> Spot | None:
         canvas = map_view.canvas

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QScrollArea, QVBoxLay
 
 from posopt_gui.controllers.pose_facts import PoseExplainer
 from posopt_gui.controllers.session import Session
+from posopt_gui.viewmodels.export_model import waypoint_of
 from posopt_gui.viewmodels.inspector_model import (
     ClearanceWords,
     FilterRow,
@@ -105,7 +106,8 @@ class InspectorView(QScrollArea):
     def _connect(self) -> None:
         session = self._session
         for signal in (
-            session.cursor_changed, session.hover_changed, self._explainer.explained,
+            session.cursor_changed, session.hover_changed, session.kept_changed,
+            self._explainer.explained,
         ):  # fmt: skip
             signal.connect(self._show_pose)
         everything = Refresh(session, self._show_all, self)
@@ -186,7 +188,7 @@ class InspectorView(QScrollArea):
 
     def _looked_at(self) -> tuple[Pose, Sheet] | None:
         session = self._session
-        result, hover = session.result, session.hover
+        result, hover = session.result, session.hover or session.kept
         if result is None:
             return None
         if hover is not None and hover.waypoint < len(result.problem.toolpath):
@@ -195,8 +197,9 @@ class InspectorView(QScrollArea):
             )
             explanation = self._explainer.explanation(result, pose)
             sheet = candidate_sheet(
-                result, pose, hover.orientation, hover.branch, explanation, self._tr
-            )
+                result, pose, hover.orientation, hover.branch, explanation, self._tr,
+                chosen=session.hover is None,
+            )  # fmt: skip
             return pose, sheet
         sequence = session.sequence
         if sequence is None or session.cursor >= len(sequence.pendant):
@@ -318,10 +321,10 @@ class InspectorView(QScrollArea):
             words = tr("All {count} checks passed", count=count)
             rows = [(Text(STATES["good"], theme.good), Text(words, theme.good))]
         for one in failed:
-            text = check_words(one, tr)
-            if one.waypoint is not None:
-                go = tr("Go to waypoint {number}", number=one.waypoint + 1)
-                text += f'<br><a href="{one.waypoint}" style="color:{theme.accent}">{go}</a>'
+            text, waypoint = check_words(one, tr), waypoint_of(one)
+            if waypoint is not None:
+                go = tr("Go to waypoint {number}", number=waypoint + 1)
+                text += f'<br><a href="{waypoint}" style="color:{theme.accent}">{go}</a>'
             rows.append((Text("", theme.error), Text(text, theme.text)))
         self.gate.set_rows(rows)
 

@@ -36,6 +36,12 @@ class LimitGauge(QWidget):
         self._theme = theme
         self.update()
 
+    def clear(self) -> None:
+        """Show nothing, in the same width."""
+        self._used = self._value = None
+        self.setToolTip("")
+        self.update()
+
     def set_used(self, limits: FloatArray, values: FloatArray) -> None:
         """The limits, and the angles that the plan passes."""
         self._limits = (float(limits[0]), float(limits[1]))

@@ -11,7 +11,16 @@ from PySide6.QtGui import QColor, QPen
 from PySide6.QtWidgets import QWidget
 
 from posopt_gui.viewmodels.map_colours import CellClass, Layer, Scale
-from posopt_gui.viewmodels.map_lines import BEFORE, CHOSEN, CONSTANT, Band, MapLine, runs
+from posopt_gui.viewmodels.map_lines import (
+    BEFORE,
+    CHOSEN,
+    CONSTANT,
+    Band,
+    MapLine,
+    end_words,
+    places_apart,
+    runs,
+)
 from posopt_gui.viewmodels.map_model import Cells, MapModel
 from posopt_gui.views.curve_plots import GAUGE, LEFT_AXIS
 from posopt_gui.views.map_interaction import Cell, MapPlot
@@ -23,7 +32,13 @@ from posopt_gui.views.map_items import (
     image_of,
     qcolour,
 )
-from posopt_gui.views.map_line_items import LineName, LineNamesItem, LinesItem, Stroke
+from posopt_gui.views.map_line_items import (
+    NO_BREAKS,
+    LineName,
+    LineNamesItem,
+    LinesItem,
+    Stroke,
+)
 from posopt_gui.views.map_palette import MapPalette
 from solver.model.settings import Scheme
 from solver.model.wishes import Pin, Region
@@ -35,6 +50,12 @@ BOTTOM_AXIS = 36
 
 DIMMED = 0.35
 """Opacity of a result whose inputs have changed."""
+
+LINE_SHIFT = 4.0
+"""How far a line is drawn below one of the same leans [px]."""
+
+EDGE_ROOM = 0.03
+"""Share of the height above and below the cells: a line at the last lean lies on their edge."""
 
 LEAST_WAYPOINTS = 4.0
 """Fewest waypoints that can be zoomed in to."""
@@ -57,7 +78,7 @@ class MapCanvas(MapPlot):
         self._cells = CellsItem()
         self._letters = LettersItem()
         self._regions, self._bands, self._outline = AreasItem(), AreasItem(), AreasItem()
-        self._rubber = AreasItem()
+        self._rubber, self._kept = AreasItem(), AreasItem()
         self._edges = pg.PlotCurveItem(connect="pairs", antialias=False)
         self._passes: list[pg.InfiniteLine] = []
         self._names = LineNamesItem()
@@ -67,7 +88,8 @@ class MapCanvas(MapPlot):
         self._lines = LinesItem()
         layers = (
             self._cells, self._letters, self._edges, self._regions, self._bands, self._cursor,
-            self._lines, self._names, self._rubber, self._outline, self._pins, self._handle,
+            self._lines, self._names, self._rubber, self._kept, self._outline, self._pins,
+            self._handle,
         )  # fmt: skip
         for number, item in enumerate(layers):
             item.setZValue(10.0 * number)
@@ -97,7 +119,7 @@ class MapCanvas(MapPlot):
             self.set_cells(0, np.empty(0))
             return
         self.set_cells(model.waypoints, model.leans)
-        frame = self.frame()
+        frame = self.room()
         self.getViewBox().setLimits(
             xMin=frame.left(), xMax=frame.right(), yMin=frame.top(), yMax=frame.bottom(),
             minXRange=min(LEAST_WAYPOINTS, frame.width()),
@@ -129,9 +151,15 @@ class MapCanvas(MapPlot):
         low = float(self._model.leans[0]) - step / 2.0
         return QRectF(0.5, low, float(self._model.waypoints), step * self._model.rows)
 
+    def room(self) -> QRectF:
+        """All cells with some room above and below them, that is shown at most."""
+        frame = self.frame()
+        edge = max(EDGE_ROOM * frame.height(), frame.height() / max(len(self._leans), 1) / 2.0)
+        return frame.adjusted(0.0, -edge, 0.0, edge) if self._model is not None else frame
+
     def fit(self) -> None:
         """Show all cells."""
-        self.getViewBox().setRange(self.frame(), padding=0.0)
+        self.getViewBox().setRange(self.room(), padding=0.0)
 
     def show_cells(self, cells: Cells | None, scale: Scale | None, colours: MapPalette) -> None:
         """Show a page."""
@@ -162,13 +190,18 @@ class MapCanvas(MapPlot):
     ) -> None:
         """Show lines, the chosen one first; `pages` (n,) tell where each is on this page."""
         strokes, names = [], []
+        model = self._model
+        branches = model.candidates.branches if model is not None else np.empty(0, np.int64)
+        called, apart = end_words(lines, branches, tr), places_apart(lines)
         for number, (line, shown) in enumerate(zip(lines, pages, strict=True)):
             pen = line_pen(line.key, number == 0, colours)
-            strokes.append(Stroke(line.waypoint, line.lean, shown, pen))
-            words = ", ".join(map(tr, line.names))
-            names.append(LineName(words, line.waypoint, line.lean, pen))
+            breaks = model.branch_breaks(line.candidate[:, 2]) if model is not None else NO_BREAKS
+            shift = LINE_SHIFT * apart[number]
+            strokes.append(Stroke(line.waypoint, line.lean, shown, pen, shift, breaks))
+            names.append(LineName(called[number], line.waypoint, line.lean, pen))
         # The chosen line lies over the others, and so is drawn last.
-        self._lines.set_strokes(strokes[::-1], qcolour(colours.theme.plot, 190))
+        casing, warning = qcolour(colours.theme.plot, 190), QColor(colours.theme.warning)
+        self._lines.set_strokes(strokes[::-1], casing, warning)
         ground = qcolour(colours.theme.surface, 225)
         self._names.set_names(names, ground, QColor(colours.theme.text))
         self.set_line(lines[0].lean if lines else np.empty(0))
@@ -278,6 +311,16 @@ class MapCanvas(MapPlot):
             self.cell_rect(cell), outline=QColor(theme.text), casing=QColor(theme.plot), width=2.0
         )
         self._outline.set_areas([area])
+
+    def show_kept(self, cell: Cell | None, colours: MapPalette) -> None:
+        """Show which cell was chosen to be looked at."""
+        if cell is None or self._model is None:
+            self._kept.set_areas(())
+            return
+        theme = colours.theme
+        fill, line = qcolour(theme.accent, 150), QColor(theme.accent)
+        area = Area(self.cell_rect(cell), fill, None, line, QColor(theme.plot), width=3.0)
+        self._kept.set_areas([area])
 
     def cell_rect(self, cell: Cell) -> QRectF:
         """The rectangle of a cell in the plot."""

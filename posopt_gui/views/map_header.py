@@ -240,5 +240,6 @@ class MapHeader(QWidget):
             tr("Draw a rectangle that no sequence may pass (X, or drag with the right button)")
         )
         self.fit_button.setText(tr("Show all"))
-        self.fit_button.setToolTip(tr("Show all waypoints and leans"))
+        wheel = tr("The wheel zooms the waypoints, with Shift the leans, with Ctrl both.")
+        self.fit_button.setToolTip(tr("Show all waypoints and leans") + "\n" + wheel)
         self._fill_boxes(self.choice)

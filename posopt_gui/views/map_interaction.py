@@ -9,7 +9,7 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt, Signal
 from PySide6.QtGui import QMouseEvent
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QGraphicsSceneWheelEvent, QWidget
 
 from solver.transforms import FloatArray
 
@@ -48,6 +48,21 @@ class WaypointAxis(pg.AxisItem):
         return [(step, offset) for step, offset in spacing if step >= 1.0] or [(1.0, 0.0)]
 
 
+class MapBox(pg.ViewBox):
+    """A view whose wheel zooms waypoints; with Ctrl both axes, with Shift the leans."""
+
+    def wheelEvent(  # noqa: N802 - Qt's name
+        self, event: QGraphicsSceneWheelEvent, axis: int | None = None
+    ) -> None:
+        """Zoom; over an axis that axis alone."""
+        keys = event.modifiers()
+        if axis is None and keys & Qt.KeyboardModifier.ShiftModifier:
+            axis = 1
+        elif axis is None and not keys & Qt.KeyboardModifier.ControlModifier:
+            axis = 0
+        super().wheelEvent(event, axis)
+
+
 class MapPlot(pg.PlotWidget):
     """A plot of cells that says what the mouse means on it."""
 
@@ -68,7 +83,9 @@ class MapPlot(pg.PlotWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         axis = WaypointAxis(orientation="bottom")
-        super().__init__(parent, axisItems={"bottom": axis}, enableMenu=False)
+        super().__init__(
+            parent, viewBox=MapBox(enableMenu=False), axisItems={"bottom": axis}, enableMenu=False
+        )
         self.hideButtons()
         self.viewport().setMouseTracking(True)
         self.forbidding = False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen, QPolygonF
 
-from posopt_gui.viewmodels.map_lines import spread
+from posopt_gui.viewmodels.label_places import label_places
 from posopt_gui.views.map_items import qcolour
 from solver.transforms import FloatArray
 
@@ -20,14 +20,26 @@ FAINT = 95
 """Opacity of a line where it runs on another page than the shown one."""
 
 
+BREAK_SIZE = 6.5
+"""Radius of the mark where the branch changes within a pass [px]."""
+
+NO_BREAKS: FloatArray = np.empty(0)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Stroke:
-    """A line over the waypoints: full where `shown` (n,), faint elsewhere."""
+    """A line over the waypoints: full where `shown` (n,), faint elsewhere.
+
+    `shift` moves it down [px], off a line that it would cover; `breaks` (k,) are the places, in
+    waypoints, where the arm changes its branch though it may not.
+    """
 
     waypoint: FloatArray
     lean: FloatArray
     shown: NDArray[np.bool_]
     pen: QPen
+    shift: float = 0.0
+    breaks: FloatArray = field(default_factory=lambda: NO_BREAKS)
 
 
 class _InView(pg.GraphicsObject):
@@ -49,11 +61,11 @@ class LinesItem(_InView):
     def __init__(self) -> None:
         super().__init__()
         self._strokes: tuple[Stroke, ...] = ()
-        self._casing = QColor()
+        self._casing, self._warning = QColor(), QColor()
 
-    def set_strokes(self, strokes: Sequence[Stroke], casing: QColor) -> None:
-        """Show other lines, the last one on top."""
-        self._strokes, self._casing = tuple(strokes), casing
+    def set_strokes(self, strokes: Sequence[Stroke], casing: QColor, warning: QColor) -> None:
+        """Show other lines, the last one on top; `warning` marks their breaks."""
+        self._strokes, self._casing, self._warning = tuple(strokes), casing, warning
         self.update()
 
     def paint(self, painter: QPainter, *_: Any) -> None:
@@ -73,8 +85,13 @@ class LinesItem(_InView):
             step = max(1, int((last - first) / max(2.0 * width, 1.0)))
             part = slice(first, last, step)
             x = transform.m11() * stroke.waypoint[part] + transform.dx()
-            y = transform.m22() * stroke.lean[part] + transform.dy()
+            y = transform.m22() * stroke.lean[part] + transform.dy() + stroke.shift
             self._draw(painter, stroke, x, y, stroke.shown[part])
+        for stroke in self._strokes:
+            for place in stroke.breaks:
+                lean = float(np.interp(place, stroke.waypoint, stroke.lean))
+                point = transform.map(QPointF(float(place), lean))
+                self._draw_break(painter, point + QPointF(0.0, stroke.shift))
         painter.setTransform(transform)
 
     def _draw(
@@ -97,6 +114,20 @@ class LinesItem(_InView):
             for pen in (QPen(self._casing, stroke.pen.widthF() + 2.5), stroke.pen):
                 painter.setPen(pen)
                 painter.drawPolyline(run)
+
+    def _draw_break(self, painter: QPainter, place: QPointF) -> None:
+        """A disc with '!': the arm cannot do this while it grinds."""
+        painter.setPen(QPen(self._casing, 1.5))
+        painter.setBrush(self._warning)
+        painter.drawEllipse(place, BREAK_SIZE, BREAK_SIZE)
+        font = QFont(painter.font())
+        font.setPixelSize(11)
+        font.setBold(True)
+        painter.setFont(font)
+        painter.setPen(QPen(QColor(self._casing.name())))
+        box = QRectF(place.x() - 8.0, place.y() - 8.0, 16.0, 16.0)
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, "!")
+        painter.setBrush(Qt.BrushStyle.NoBrush)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -140,23 +171,16 @@ class LineNamesItem(_InView):
         font.setPixelSize(11)
         painter.setFont(font)
         metrics = QFontMetricsF(font)
-        boxes = [metrics.horizontalAdvance(one.text) + self.SAMPLE + 14.0 for one in self._names]
-        ends, wanted = [], []
-        for name, width in zip(self._names, boxes, strict=True):
-            end = _end_in_view(name, seen.left(), seen.right())
-            place = transform.map(QPointF(*end))
-            back = end[0] - width / abs(transform.m11())
-            before = float(np.interp(back, name.waypoint, name.lean))
-            # On the side of the line that it does not come from.
-            side = 0.85 if before > end[1] else -0.85
-            ends.append(place.x())
-            wanted.append(place.y() + side * self.HEIGHT)
-        low, high = frame.top() + self.HEIGHT, frame.bottom() - self.HEIGHT
-        places = spread(np.array(wanted), self.HEIGHT + 2.0, low, high)
-        for name, width, end_x, y in zip(self._names, boxes, ends, places, strict=True):
-            right = min(end_x, frame.right()) - 6.0
-            box = QRectF(right - width, float(y) - self.HEIGHT / 2.0, width, self.HEIGHT)
-            self._draw_name(painter, name, box)
+        widths = [metrics.horizontalAdvance(one.text) + self.SAMPLE + 14.0 for one in self._names]
+        scale, shift = (transform.m11(), transform.m22()), (transform.dx(), transform.dy())
+        curves = [
+            (scale[0] * one.waypoint + shift[0], scale[1] * one.lean + shift[1])
+            for one in self._names
+        ]
+        room = (frame.left(), frame.top(), frame.right(), frame.bottom())
+        boxes = label_places(curves, widths, self.HEIGHT, room)
+        for name, width, place in zip(self._names, widths, boxes, strict=True):
+            self._draw_name(painter, name, QRectF(*place, width, self.HEIGHT))
         painter.setTransform(transform)
 
     def _draw_name(self, painter: QPainter, name: LineName, box: QRectF) -> None:
@@ -171,9 +195,3 @@ class LineNamesItem(_InView):
         painter.setPen(self._text)
         words = box.adjusted(self.SAMPLE + 9.0, 0.0, 0.0, 0.0)
         painter.drawText(words, Qt.AlignmentFlag.AlignVCenter, name.text)
-
-
-def _end_in_view(name: LineName, left: float, right: float) -> tuple[float, float]:
-    x = float(np.clip(right, name.waypoint[0], name.waypoint[-1]))
-    x = max(x, left) if x < left else x
-    return x, float(np.interp(x, name.waypoint, name.lean))

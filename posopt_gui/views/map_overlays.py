@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from posopt_gui.controllers.session import Session
@@ -14,13 +16,15 @@ from posopt_gui.viewmodels.map_lines import (
     node_edges,
     sequence_lines,
 )
-from posopt_gui.viewmodels.trouble_model import trouble_of
+from posopt_gui.viewmodels.trouble_model import Trouble, trouble_of
+from posopt_gui.viewmodels.verdicts import plan_note
+from posopt_gui.viewmodels.wish_words import beyond_path, wishes_on_path
 from posopt_gui.views.map_canvas import MapCanvas
 from posopt_gui.views.map_extras import MapExtras
 from posopt_gui.views.map_header import MapHeader
 from posopt_gui.views.map_pointing import Pointing
 from posopt_gui.views.map_shown import Shown
-from posopt_gui.views.map_widgets import Notice
+from posopt_gui.views.map_widgets import LegendStrip, Notice
 
 
 class Overlays:
@@ -34,14 +38,17 @@ class Overlays:
         shown: Shown,
         extras: MapExtras,
         pointing: Pointing,
+        row: LegendStrip,
     ) -> None:
         self._session, self._canvas, self._header = session, canvas, header
         self._shown, self._extras, self._pointing = shown, extras, pointing
         self._tr = session.look.tr
         self.bands: tuple[Band, ...] = ()
         self.lines: tuple[MapLine, ...] = ()
-        self.notice = Notice(canvas)
-        self.notice.clicked.connect(self._go_to_band)
+        self.notice = Notice(row)
+        self._told_of: int | None = None
+        self.notice.clicked.connect(self._go_to_what_is_told)
+        self.notice.acted.connect(self._take_away)
 
     def show_all(self) -> None:
         """Show everything anew."""
@@ -96,17 +103,53 @@ class Overlays:
         self._canvas.draggable = not session.stale and session.result is not None
         cell = session.document.state.cell
         trouble = trouble_of(session.problem_error, session.plan_error, session.answer, tr, cell)
+        self._told_of = self.bands[0].waypoint if self.bands else None
         if trouble is not None:
-            # Why a plan failed is long, and the inspector tells it in full.
-            causes = () if session.plan_error is not None else trouble.causes[:1]
-            words = [trouble.headline, *(cause.text for cause in causes)]
-            self.notice.tell("error", " ".join(words))
+            self.notice.tell("error", *self._trouble_words(trouble))
         elif session.stale and not session.planning:
             self.notice.tell("warning", tr("Inputs have changed; plan to update (F5)"))
         elif session.result is None and not session.planning:
             self.notice.tell("info", tr("There is no plan yet"))
         else:
+            self._tell_worth()
+
+    def _tell_worth(self) -> None:
+        """Say where the plan keeps less than was asked; a good plan needs no words."""
+        result, sequence = self._session.result, self._session.sequence
+        said = plan_note(result, sequence, self._tr) if result and sequence else None
+        if said is not None and said.severity == "warning":
+            self._told_of = said.waypoint
+            self.notice.tell(said.severity, said.text)
+        else:
             self.notice.hide()
+
+    def _trouble_words(self, trouble: Trouble) -> tuple[str, str]:
+        """What is told in one line, and what is offered; the inspector tells all of it."""
+        session, tr = self._session, self._tr
+        if session.problem_error is not None or session.plan_error is not None:
+            causes = () if session.plan_error is not None else trouble.causes[:1]
+            return " ".join([trouble.headline, *(cause.text for cause in causes)]), ""
+        state = session.document.state
+        beyond = beyond_path(state.pins, state.regions, session.waypoints)
+        if beyond is not None and not session.previewing:
+            several = len(beyond.pins) + len(beyond.regions) > 1
+            return beyond.words(tr), tr("Take them away") if several else tr("Take it away")
+        pinned = any(one.waypoint == self._told_of for one in state.pins)
+        offer = ""
+        if pinned and self._told_of is not None and not session.previewing:
+            offer = tr("Unpin waypoint {number}", number=self._told_of + 1)
+        return " ".join(cause.text for cause in trouble.causes[:1]), offer
+
+    def _take_away(self) -> None:
+        """Take away what the notice offers to."""
+        session = self._session
+        state, count = session.document.state, session.waypoints
+        if beyond_path(state.pins, state.regions, count) is not None:
+            pins, regions = wishes_on_path(state.pins, state.regions, count)
+            changed = replace(state, pins=pins, regions=regions)
+            session.document.edit("Take away what lies beyond the path", changed)
+        elif self._told_of is not None:
+            session.unpin(self._told_of)
 
     def show_edges(self, *_: object) -> None:
         """Show the edges of the node under the mouse, or of the sequence at the cursor."""
@@ -124,6 +167,6 @@ class Overlays:
             return reading.node
         return int(sequence.nodes[self._session.cursor]) if sequence is not None else None
 
-    def _go_to_band(self) -> None:
-        if self.bands:
-            self._session.set_cursor(self.bands[0].waypoint)
+    def _go_to_what_is_told(self) -> None:
+        if self._told_of is not None:
+            self._session.set_cursor(self._told_of)

@@ -42,6 +42,7 @@ class Pointing(QObject):
         self._explaining = False
         self._slowest = 0.0
         self._explained: tuple[Reading, Explanation] | None = None
+        self._told: Reading | None = None
         self._rest = QTimer(self)
         self._rest.setSingleShot(True)
         self._rest.setInterval(PATIENCE)
@@ -49,6 +50,7 @@ class Pointing(QObject):
         canvas.pointed.connect(self.point)
         extras.explaining.connect(self._explain_from_now)
         session.hover_changed.connect(self._show_hover)
+        session.kept_changed.connect(self.show_kept)
 
     @property
     def reading(self) -> Reading | None:
@@ -75,7 +77,7 @@ class Pointing(QObject):
         self._mouse = mouse
         same = cell == self.cell
         self.cell = cell
-        reading = self.reading
+        reading = self._told = self.reading
         if reading is None:
             self._rest.stop()
             self.card.hide()
@@ -93,6 +95,12 @@ class Pointing(QObject):
         elif self._explaining:
             self._rest.start()
         self._show_card(reading)
+
+    def point_again(self) -> None:
+        """Point at what stands under the resting mouse now, if that is something else."""
+        if self.cell is not None and self.card.isVisible() and self.reading != self._told:
+            cell, self.cell = self.cell, None
+            self.point(cell, self._mouse)
 
     def _explain_from_now(self) -> None:
         self._explaining = True
@@ -150,3 +158,11 @@ class Pointing(QObject):
             return
         row = model.row_of_orientation(hover.orientation)
         self._canvas.show_outline(Cell(hover.waypoint, row), self._shown.colours)
+
+    def show_kept(self, *_: object) -> None:
+        """Mark the candidate that was chosen to be looked at."""
+        model, kept = self._shown.model, self._session.kept
+        cell = None
+        if kept is not None and model is not None and kept.waypoint < model.waypoints:
+            cell = Cell(kept.waypoint, model.row_of_orientation(kept.orientation))
+        self._canvas.show_kept(cell, self._shown.colours)

@@ -53,7 +53,7 @@ class MapView(QWidget):
         self.pointing = Pointing(session, self.canvas, self._shown, self.extras, self)
         self.wishes = Wishes(session, self.canvas, self.header, self._shown, self.pointing)
         self.overlays = Overlays(
-            session, self.canvas, self.header, self._shown, self.extras, self.pointing
+            session, self.canvas, self.header, self._shown, self.extras, self.pointing, self.legend
         )
         self._bar = QProgressBar(self)
         self._lay_out()
@@ -168,7 +168,7 @@ class MapView(QWidget):
     def event(self, event: QEvent) -> bool:
         """Escape leaves what is being dragged before it stops anything else."""
         escape = isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Escape
-        if escape and event.type() == QEvent.Type.ShortcutOverride and self.wishes.busy:
+        if escape and event.type() == QEvent.Type.ShortcutOverride and self.wishes.leaves:
             event.accept()
             return True
         return super().event(event)
@@ -191,6 +191,7 @@ class MapView(QWidget):
         )
         self._show_page()
         self.overlays.show_all()
+        self.pointing.show_kept()
 
     def retranslate(self) -> None:
         """Set all texts again."""
@@ -321,6 +322,7 @@ class MapView(QWidget):
         self.canvas.show_cells(shown.cells, shown.scale, shown.colours)
         self._show_legend()
         self.overlays.show_edges()
+        self.pointing.point_again()
 
     def _show_legend(self) -> None:
         known = self._given() is not None

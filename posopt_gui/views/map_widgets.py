@@ -19,12 +19,20 @@ from PySide6.QtGui import (
     QPen,
     QResizeEvent,
 )
-from PySide6.QtWidgets import QFrame, QLabel, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QSizePolicy,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from posopt_gui.theme import Theme
 from posopt_gui.viewmodels.map_colours import FIRST_INDEX, ByteArray, Scale
 from posopt_gui.viewmodels.map_readings import Card
-from posopt_gui.views.curve_plots import LEFT_AXIS
+from posopt_gui.views.shell_parts import ElidedLabel
 
 CHIP = 13.0
 GAP = 16.0
@@ -222,19 +230,28 @@ class HoverCard(QFrame):
 
 
 class Notice(QFrame):
-    """A sentence over the map, in the colour of what it tells; it can be clicked."""
+    """A sentence in the legend's row, in the colour of what it tells; it can be clicked.
+
+    It covers as much of the legend as it needs and nothing of the map; where the row is too
+    short, the rest is in the tool tip. A button beside it can offer what helps.
+    """
 
     clicked = Signal()
+    acted = Signal()
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self._room = parent
         self.setObjectName("map_notice")
-        self._label = QLabel(self)
-        self._label.setWordWrap(True)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(12, 6, 12, 6)
-        layout.addWidget(self._label)
+        self._label = ElidedLabel(self)
+        self.button = QToolButton(self)
+        self.button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.button.clicked.connect(self.acted)
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(8, 0, 4, 0)
+        layout.setSpacing(8)
+        layout.addWidget(self._label, 1)
+        layout.addWidget(self.button)
         self._theme: Theme | None = None
         self._severity = "info"
         parent.installEventFilter(self)
@@ -253,28 +270,33 @@ class Notice(QFrame):
             f"#map_notice {{ background: {theme.surface}; border: 1px solid {theme.border};"
             f" border-left: 4px solid {edge}; border-radius: 3px; }}"
             f"#map_notice QLabel {{ color: {theme.text}; background: transparent; }}"
+            f"#map_notice QToolButton {{ color: {theme.accent}; border: 1px solid {theme.border};"
+            f" border-radius: 3px; padding: 1px 6px; background: {theme.raised}; }}"
+            f"#map_notice QToolButton:focus {{ border-color: {theme.accent}; }}"
         )
 
-    def tell(self, severity: str, text: str) -> None:
-        """Show a sentence."""
+    def tell(self, severity: str, text: str, action: str = "") -> None:
+        """Show a sentence, and a button where there is something to offer."""
+        self.button.setVisible(bool(action))
+        self.button.setText(action)
         if (severity, text) != (self._severity, self.text) and self._theme is not None:
             self._severity = severity
-            self._label.setText(text)
+            self._label.tell(text)
             self.set_theme(self._theme)
         self._place()
         self.show()
         self.raise_()
 
     def _place(self) -> None:
-        room = self._room.width() - 120
-        wanted = self._label.fontMetrics().horizontalAdvance(self.text) + 40
-        width = max(120, min(wanted, room, 640))
-        self.setFixedWidth(width)
-        self.setFixedHeight(self._label.heightForWidth(width - 28) + 14)
-        self.move(LEFT_AXIS + max(0, (self._room.width() - LEFT_AXIS - width) // 2), 10)
+        wanted = self._label.fontMetrics().horizontalAdvance(self.text) + 26
+        if self.button.text():
+            wanted += self.button.sizeHint().width() + 8
+        width = max(80, min(wanted, self._room.width() - 2 * int(MARGIN)))
+        self.setFixedSize(width, LEAST_HEIGHT - 2)
+        self.move(self._room.width() - width - int(MARGIN), 0)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
-        """Stay in the middle when the map changes its size."""
+        """Stay at the right end when the row changes its size."""
         if event.type() == QEvent.Type.Resize and self.isVisible():
             self._place()
         return super().eventFilter(watched, event)
@@ -289,11 +311,16 @@ def _card_html(card: Card, colour: str, theme: Theme) -> str:
     tell = html.escape
     rows = []
     for row in card.rows:
-        tone = theme.error if row.passed is False else theme.text
-        mark = "✕" if row.passed is False else ""
+        tone = theme.warning if row.near else theme.text
+        tone = theme.error if row.passed is False else tone
+        mark = "✕ " if row.passed is False else ""
+        found, margin = tell(row.value), mark + tell(row.margin)
+        if not row.margin:
+            found, margin = "", mark + found
         rows.append(
             f'<tr><td style="color:{theme.muted}">{tell(row.label)}</td>'
-            f'<td align="right" style="color:{tone}">&nbsp;&nbsp;{mark} {tell(row.value)}</td>'
+            f'<td align="right" style="color:{theme.muted}">&nbsp;&nbsp;{found}</td>'
+            f'<td align="right" style="color:{tone}">&nbsp;&nbsp;{margin}</td>'
             f'<td style="color:{tone}">&nbsp;&nbsp;{tell(row.subject)}</td></tr>'
         )
     return (

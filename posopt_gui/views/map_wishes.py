@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import html
+import textwrap
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -9,10 +11,11 @@ from PySide6.QtCore import QObject, QPoint
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QMenu
 
-from posopt_gui.controllers.session import Message, Session
+from posopt_gui.controllers.session import Hover, Message, Session
 from posopt_gui.viewmodels.map_colours import CLASS_LABELS
 from posopt_gui.viewmodels.map_model import Reading
 from posopt_gui.viewmodels.map_readings import degrees, price_words
+from posopt_gui.viewmodels.trouble_model import reason_words
 from posopt_gui.views.map_canvas import MapCanvas
 from posopt_gui.views.map_header import MapHeader
 from posopt_gui.views.map_interaction import Cell
@@ -23,6 +26,9 @@ from solver.model.wishes import Region
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+REASON_WIDTH = 54
+"""Most characters in a line of the reason why there is no sequence."""
 
 ROUNDING = 1e-6
 """Slack of a region's bounds [rad]."""
@@ -45,6 +51,7 @@ class Wishes(QObject):
         self._tr = session.look.tr
         self.price = HoverCard(canvas)
         self._held: Cell | None = None
+        self._following = object()
         self._mouse = QPoint()
         canvas.clicked.connect(self._go)
         canvas.double_clicked.connect(self._pin_cell)
@@ -58,6 +65,11 @@ class Wishes(QObject):
     def busy(self) -> bool:
         """Whether anything is being dragged, or the next drag forbids."""
         return self._canvas.dragging or self._header.forbid_button.isChecked()
+
+    @property
+    def leaves(self) -> bool:
+        """Whether Escape gives anything up here."""
+        return self.busy or self._session.kept is not None
 
     @property
     def _branch(self) -> int | None:
@@ -78,7 +90,32 @@ class Wishes(QObject):
         return float(model.candidates.orientations[row * others, 0])
 
     def _go(self, cell: Cell) -> None:
+        """Look at a pose; one that the sequence does not pass stays until the place changes."""
+        candidate, sequence = self._candidate(cell), self._session.sequence
         self._session.set_cursor(cell.waypoint)
+        passed = candidate is not None and candidate == self._passed(cell.waypoint)
+        looked = candidate if sequence is not None and not passed else None
+        if looked is None:
+            self._session.keep(None)
+        else:
+            self._session.look_at(looked)
+
+    def _candidate(self, cell: Cell) -> Hover | None:
+        """What stands in a cell on the shown page."""
+        shown = self._shown
+        if shown.model is None or shown.cells is None:
+            return None
+        found = shown.model.reading(shown.cells, cell.waypoint, cell.row)
+        return Hover(found.waypoint, found.orientation, found.slot, found.turn)
+
+    def _passed(self, waypoint: int) -> Hover | None:
+        """What the shown sequence passes at a waypoint."""
+        sequence, model = self._session.sequence, self._shown.model
+        if sequence is None or model is None or waypoint >= len(sequence.nodes):
+            return None
+        node = int(sequence.nodes[waypoint])
+        _, orientation, slot, turn = map(int, model.candidates.nodes.candidate[node])
+        return Hover(waypoint, orientation, slot, turn)
 
     def _show_grip(self, waypoint: int | None) -> None:
         model = self._shown.model
@@ -97,6 +134,8 @@ class Wishes(QObject):
         self._pointing.point(None, mouse)
         self._canvas.show_handle(cell, self._shown.colours, held=True)
         if changed:
+            self._session.set_cursor(cell.waypoint)
+            self._session.keep(None)
             lean = self._lean(cell.row)
             self._session.preview_pin(cell.waypoint, lean, self._branch, self._turn)
         self.show_price()
@@ -106,17 +145,41 @@ class Wishes(QObject):
         model, held = self._shown.model, self._held
         if held is None or model is None:
             return
+        # The line follows the hand first; then, in turns of their own, all other views.
+        self._session.turns.ask(self._following, self._follow)
         theme = self._shown.colours.theme
         place = self._tr("Waypoint {number}", number=held.waypoint + 1)
         lean = self._tr("lean {value}", value=degrees(float(model.leans[held.row])))
         answer = self._session.answer
         words, colour = "…", theme.text
         if answer is not None and answer.sequence is None:
-            words, colour = self._tr("no sequence"), theme.error
+            words, colour = self._no_sequence(answer.reason), theme.error
         elif answer is not None:
             words = price_words(answer.price, self._shown.plan_cost, self._tr)
             words = self._tr("cost {price}", price=words)
         self.price.show_text(f"{place} · {lean}<br>{words}", self._mouse, colour)
+
+    def _no_sequence(self, reason: str) -> str:
+        """That there is none, and why, in lines that are not too long."""
+        lines = textwrap.wrap(reason_words(reason, self._tr), REASON_WIDTH)
+        words = "<br>".join(map(html.escape, lines))
+        tone = self._shown.colours.theme.text
+        plain = f'<span style="font-weight:normal; color:{tone}">{words}</span>'
+        return f"{self._tr('no sequence')}<br>{plain}"
+
+    def _follow(self) -> None:
+        """Have all views look at the pose that is held."""
+        held = self._held
+        if held is None or self._shown.model is None:
+            return
+        passed = self._passed(held.waypoint)
+        answer = self._session.answer
+        answered = answer is not None and answer.sequence is not None
+        if passed is not None and answered:
+            # An answer to where the hand was before is not looked at.
+            here = self._shown.model.row_of_orientation(passed.orientation) == held.row
+            passed = passed if here else None
+        self._session.set_hover(passed if answered and passed else self._candidate(held))
 
     def _drop(self, cell: Cell) -> None:
         self._let_go()
@@ -124,6 +187,8 @@ class Wishes(QObject):
 
     def _let_go(self) -> None:
         self._held = None
+        self._session.turns.forget(self._following)
+        self._session.set_hover(None)
         self.price.hide()
         self._canvas.show_handle(None, self._shown.colours)
 
@@ -134,6 +199,9 @@ class Wishes(QObject):
         if self._held is not None:
             self._let_go()
             self._session.end_preview()
+        if self._session.kept is not None:
+            self._session.keep(None)
+            was = True
         if self._header.forbid_button.isChecked():
             self._header.forbid_button.setChecked(False)
             was = True
@@ -154,6 +222,7 @@ class Wishes(QObject):
             self._refuse(reading)
             return
         lean = self._lean(reading.row)
+        self._session.keep(None)
         self._session.pin(reading.waypoint, lean, reading.branch, reading.turn)
 
     def _refuse(self, reading: Reading) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QModelIndex, QSize, QSortFilterProxyModel, Qt
-from PySide6.QtGui import QColor, QFont, QShowEvent
+from PySide6.QtGui import QColor, QFont, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QFrame,
@@ -24,8 +24,9 @@ from PySide6.QtWidgets import (
 from posopt_gui.controllers.comparison import Comparison
 from posopt_gui.controllers.pose_facts import NearestBodies
 from posopt_gui.controllers.session import Message, Session
-from posopt_gui.viewmodels.results_model import Note, candidate_counts, notes, scheme_table, totals
+from posopt_gui.viewmodels.results_model import candidate_counts, notes, scheme_table, totals
 from posopt_gui.viewmodels.trouble_model import plan_words, trouble_of
+from posopt_gui.viewmodels.verdicts import Note
 from posopt_gui.viewmodels.waypoint_table import WaypointTable
 from posopt_gui.views.refresh import Refresh
 from posopt_gui.views.result_tables import copy_selection, pad_cells, sign_icon, tabular
@@ -221,12 +222,6 @@ class ResultsView(QWidget):
         self.schemes.setRowCount(len(shown.rows))
         self.schemes.setHorizontalHeaderLabels(list(shown.heads))
         self.schemes.setVerticalHeaderLabels([label for label, _ in shown.rows])
-        header = self.schemes.horizontalHeader()
-        widest = max((header.sectionSizeHint(one) for one in range(header.count())), default=0)
-        # Equally wide where that cuts no head.
-        room = self.schemes.viewport().width() >= widest * header.count()
-        modes = QHeaderView.ResizeMode
-        header.setSectionResizeMode(modes.Stretch if room else modes.ResizeToContents)
         for row, (_, texts) in enumerate(shown.rows):
             for column, text in enumerate(texts):
                 item = QTableWidgetItem(text)
@@ -237,6 +232,29 @@ class ResultsView(QWidget):
                     item.setForeground(QColor(self._session.look.theme.good))
                 item.setFont(font)
                 self.schemes.setItem(row, column, item)
+        self._fit_schemes()
+
+    def _fit_schemes(self) -> None:
+        """Make the columns equally wide where that cuts nothing."""
+        header, labels = self.schemes.horizontalHeader(), self.schemes.verticalHeader()
+        columns = range(header.count())
+        widest = max(
+            (max(header.sectionSizeHint(one), self.schemes.sizeHintForColumn(one))
+             for one in columns), default=0,
+        )  # fmt: skip
+        # The labels of the rows may be new, and the viewport not be laid out for them yet.
+        room = self.schemes.width() - labels.sizeHint().width() - self._bar_width()
+        modes = QHeaderView.ResizeMode
+        fits = room >= widest * header.count()
+        header.setSectionResizeMode(modes.Stretch if fits else modes.ResizeToContents)
+
+    def _bar_width(self) -> int:
+        return self.schemes.verticalScrollBar().sizeHint().width()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        """Share the room among the columns anew."""
+        super().resizeEvent(event)
+        self._fit_schemes()
 
     def _on_said(self, message: Message) -> None:
         self._said.insert(0, Note(message.severity, message.text, message.waypoint))

@@ -51,6 +51,7 @@ from posopt_gui.views.scene_items import (
     transform,
     unit_disc,
 )
+from posopt_gui.views.scene_tools import TRAILS
 from solver.transforms import FloatArray
 
 AXIS_LENGTH = 0.16
@@ -126,7 +127,7 @@ class SceneCanvas(GlPicture):
         self._path_line.setData(color=rgba(theme.line, 0.9))
         self._path_points.setData(color=rgba(theme.line))
         self._normals.setData(color=rgba(theme.line, 0.45))
-        self._trail.setData(color=rgba(theme.accent))
+        self._trail.setData(color=rgba(TRAILS[theme.dark]))
         self._current.setData(color=rgba(theme.accent))
         self._grid.setData(color=self._grid_colour())
         for label in (self._distance, *self._names):
@@ -241,7 +242,7 @@ class SceneCanvas(GlPicture):
 
     def show_trail(self, trail: FloatArray | None, *, dimmed: bool = False) -> None:
         """Draw the TCP's way (k, 3)."""
-        colour = rgba(self._theme.muted, 0.6) if dimmed else rgba(self._theme.accent)
+        colour = rgba(self._theme.muted, 0.6) if dimmed else rgba(TRAILS[self._theme.dark])
         self._trail.setData(pos=np.zeros((0, 3)) if trail is None else trail, color=colour)
 
     def show_ghost(self, joints: FloatArray | None, colour: Rgba = (0.5, 0.6, 0.8, 0.4)) -> None:

@@ -20,6 +20,9 @@ PARTS: Mapping[str, tuple[str, str, bool]] = {
 }
 """Parts of the picture: caption, explanation and whether they are shown at first."""
 
+TRAILS = {False: "#7B3FB5", True: "#C9A2F2"}
+"""Colour of the trail in the light and in the dark theme: the path, on which it lies, is blue."""
+
 CAMERAS = (*PRESETS, CLOSE_UP)
 
 
@@ -44,6 +47,8 @@ class SceneTools(QFrame):
         self._camera_button = self._menu_button(self._camera_menu)
         self._parts_button = self._menu_button(self._parts_menu)
         self._part_buttons = [self._button(one) for one in self.part_actions.values()]
+        for name, button in zip(self.part_actions, self._part_buttons, strict=True):
+            button.setObjectName(f"part_{name}")
         layout = QHBoxLayout(self)
         layout.setContentsMargins(3, 3, 3, 3)
         layout.setSpacing(1)
@@ -96,6 +101,8 @@ class SceneTools(QFrame):
             f"QToolButton:focus {{ border: 1px solid {theme.accent}; padding: 2px 6px; }}"
             f"QToolButton:checked {{ background: {theme.selection}; color: {theme.text}; }}"
             f'QToolButton[popupMode="2"] {{ padding-right: 18px; }}'
+            f"QToolButton#part_path {{ border-bottom: 2px solid {theme.line}; }}"
+            f"QToolButton#part_trail {{ border-bottom: 2px solid {TRAILS[theme.dark]}; }}"
             f"QToolButton::menu-indicator {{ border-left-color: {theme.surface};"
             f" border-right-color: {theme.surface}; }}"
         )

@@ -16,6 +16,7 @@ from posopt_gui.views.camera import CLOSE_UP, FIELD_OF_VIEW, PRESETS, Camera, cl
 from posopt_gui.views.opengl import is_available
 from posopt_gui.views.refresh import Refresh
 from posopt_gui.views.scene_ghost import SceneGhost
+from posopt_gui.views.scene_looked import Looked
 from posopt_gui.views.scene_tools import SceneTools
 from posopt_gui.workers.jobs import JobLine
 from solver.errors import PosoptError
@@ -46,9 +47,9 @@ class SceneView(QWidget):
         self._canvas: SceneCanvas | None = None
         self._cell: CellModel | None = None
         self._probe: PoseProbe | None = None
-        self._report: PoseReport | None = None
+        self._looked = Looked(session)
         self._failure = ""
-        self._fitted = False
+        self._fitted = self._fitted_to_plan = False
         self._fitted_camera: Camera | None = None
         self._pool = QThreadPool(self)
         self._pool.setMaxThreadCount(1)
@@ -86,7 +87,8 @@ class SceneView(QWidget):
         session.result_changed.connect(results.soon)
         session.stale_changed.connect(results.soon)
         session.place_changed.connect(self._on_place)
-        self._ghost = SceneGhost(session, self)
+        session.kept_changed.connect(self._on_place)
+        self._ghost = SceneGhost(session, self, self._looked)
         session.look.language_changed.connect(self.retranslate)
         session.look.theme_changed.connect(self.retheme)
         tools.preset_chosen.connect(self.look_from)
@@ -117,7 +119,12 @@ class SceneView(QWidget):
     @property
     def report(self) -> PoseReport | None:
         """Clearance and contact of the shown pose, where they are known."""
-        return self._report
+        return self._looked.report
+
+    @property
+    def ghost_report(self) -> PoseReport | None:
+        """The same of the ghost."""
+        return self._looked.ghost_report
 
     def retranslate(self) -> None:
         """Set all texts again."""
@@ -299,10 +306,18 @@ class SceneView(QWidget):
 
             trail = tcp_trail(result.problem, sequence.pendant)
             canvas.show_trail(trail, dimmed=self.session.stale)
+            self._fit_to_plan(canvas)
             if self._probe is None or self._probe.problem is not result.problem:
                 self._probe = None
                 self._probes.submit(lambda _: build_probe(result))
         self._on_place()
+
+    def _fit_to_plan(self, canvas: SceneCanvas) -> None:
+        """The arm at work is lower than at home: come nearer, unless somebody has looked around."""
+        if not self._fitted_to_plan and self._fitted:
+            self._fitted_to_plan = True
+            if self._fitted_camera is not None and canvas.camera.same_as(self._fitted_camera):
+                QTimer.singleShot(0, self, self.fit)
 
     def _probe_built(self, probe: PoseProbe) -> None:
         result = self.session.result
@@ -321,24 +336,20 @@ class SceneView(QWidget):
         points = cell.path.points
         cursor = self.session.cursor
         canvas.show_current(points[cursor] if cursor < len(points) else None)
-        self._measure(cell)
+        self._looked.measure(cell, self._probe)
+        self.show_report()
 
-    def _measure(self, cell: CellModel) -> None:
-        """Clearance and contact of the shown pose; of a stale plan nothing is said."""
-        canvas, probe, session = self._canvas, self._probe, self.session
-        whole = session.place == session.cursor
-        known = (
-            probe is not None
-            and not session.stale
-            and self._sequence() is not None
-            and (probe.quick or whole)
-        )
-        self._report = None
-        if probe is not None and known:
-            self._report = probe.measure(self._joints(cell), session.cursor)
-        if canvas is not None:
+    def measure_ghost(self) -> None:
+        """Measure the ghost, and draw that instead of what was measured of the pose."""
+        self._looked.measure_ghost(self._probe)
+        self.show_report()
+
+    def show_report(self) -> None:
+        """Draw what was measured."""
+        canvas, cell = self._canvas, self._cell
+        if canvas is not None and cell is not None:
             required = cell.problem.settings.safety_distance
-            canvas.show_report(self._report, required=required)
+            canvas.show_report(self._looked.shown_report, required=required)
         self._show_note()
 
     def _on_shown(self) -> None:
@@ -350,28 +361,17 @@ class SceneView(QWidget):
         return self.session.sequence
 
     def _joints(self, cell: CellModel) -> FloatArray:
-        """(6,) the shown pose: of the plan where there is one, else at home."""
-        from posopt_gui.viewmodels.scene_model import joints_at  # noqa: PLC0415
-
-        sequence = self._sequence()
-        return cell.rest if sequence is None else joints_at(sequence.pendant, self.session.place)
+        """(6,) the solid pose."""
+        return self._looked.joints(cell)
 
     # ---- notes
 
     def _show_note(self) -> None:
-        lines = self._note_lines()
+        lines = self._looked.notes(self._cell)
         self._note.setText("\n".join(lines))
         self._note.setVisible(bool(lines) and self._canvas is not None)
         self._note.adjustSize()
         self._lay_out()
-
-    def _note_lines(self) -> list[str]:
-        from posopt_gui.viewmodels.scene_notes import note_lines  # noqa: PLC0415
-
-        session = self.session
-        if session.problem is None and session.problem_error is not None:
-            return [self._tr("The drawing shows the cell before the last change.")]
-        return note_lines(self._tr, self._cell, self._report, stale=session.stale)
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         """Keep the bar in its corner and the notes in theirs."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-from PySide6.QtCore import QObject, QTimer
-from PySide6.QtWidgets import QProgressBar, QStatusBar
+from PySide6.QtCore import QObject, Qt, QTimer, Signal
+from PySide6.QtWidgets import QProgressBar, QStatusBar, QToolButton
 
 from posopt_gui.controllers.session import Message, Session
-from posopt_gui.viewmodels.number_words import clearance_mm
 from posopt_gui.viewmodels.trouble_model import Trouble, trouble_of
+from posopt_gui.viewmodels.verdicts import gate_words, plan_note
 from posopt_gui.views.shell_parts import ElidedLabel
 
 STAGES: Final[Mapping[str, str]] = {
@@ -24,7 +24,9 @@ STAGES: Final[Mapping[str, str]] = {
 
 
 class StatusLine(QObject):
-    """Puts words and a progress bar into a status bar and keeps them true."""
+    """Puts words, progress and the verdict of the checks into a status bar; keeps them true."""
+
+    checks_wanted = Signal()
 
     def __init__(self, session: Session, bar: QStatusBar) -> None:
         super().__init__(bar)
@@ -36,8 +38,13 @@ class StatusLine(QObject):
         self._progress = QProgressBar()
         self._progress.setFixedSize(180, 8)
         self._progress.setTextVisible(False)
+        self.gate = QToolButton()
+        self.gate.setAutoRaise(True)
+        self.gate.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.gate.clicked.connect(self.checks_wanted)
         bar.addWidget(self.words, 1)
         bar.addPermanentWidget(self._progress)
+        bar.addPermanentWidget(self.gate)
         session.planning_changed.connect(self._on_planning)
         session.progress.connect(self._on_progress)
         session.message.connect(self._on_message)
@@ -49,7 +56,29 @@ class StatusLine(QObject):
         session.look.language_changed.connect(self._forget)
         session.look.language_changed.connect(self.refresh)
         session.look.theme_changed.connect(self.refresh)
+        session.check_changed.connect(self.show_gate)
+        for changed in (session.stale_changed, session.planning_changed):
+            changed.connect(self.show_gate)
+        session.look.language_changed.connect(self.show_gate)
+        session.look.theme_changed.connect(self.show_gate)
+        self.show_gate()
         self._on_planning(False)
+
+    def show_gate(self, *_: object) -> None:
+        """Say in a line whether the program passes; nothing where that is not known."""
+        session = self._session
+        report = session.report
+        known = report is not None and not session.stale and not session.planning
+        self.gate.setVisible(known)
+        if report is None or not known:
+            return
+        words, state = gate_words(report, self._tr)
+        theme = session.look.theme
+        colour = theme.good if state == "good" else theme.error
+        self.gate.setText(("✓ " if state == "good" else "✕ ") + words)
+        self.gate.setAccessibleName(words)
+        self.gate.setToolTip(self._tr("Show the checks of the program"))
+        self.gate.setStyleSheet(f"QToolButton {{ color: {colour}; font-weight: 600; }}")
 
     def refresh(self, *_: object) -> None:
         """Say how things stand."""
@@ -69,13 +98,9 @@ class StatusLine(QObject):
             self.words.tell(self._tr("The inputs have changed. Plan to update."))
         elif trouble is not None:
             self.words.tell(_in_one_line(trouble), session.look.theme.error)
-        elif sequence is not None:
-            words = self._tr(
-                "Planned: least clearance {clearance} mm, joint cost {cost}.",
-                clearance=clearance_mm(sequence.least_clearance),
-                cost=f"{sequence.joint_cost:.4f}",
-            )
-            self.words.tell(words)
+        elif sequence is not None and session.result is not None:
+            said = plan_note(session.result, sequence, self._tr)
+            self._tell(Message(said.severity, said.text, said.waypoint))
 
     def _on_planning(self, busy: bool) -> None:
         self._progress.setVisible(busy)

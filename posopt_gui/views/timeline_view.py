@@ -1,4 +1,4 @@
-"""The playback bar: slider over the waypoints, play and step, pace and loop."""
+"""The playback bar: slider below the plots, play and step, pace and loop."""
 
 from __future__ import annotations
 
@@ -14,14 +14,12 @@ from PySide6.QtGui import (
     QPixmap,
     QPolygonF,
 )
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QToolButton, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from posopt_gui.controllers.playback import SPEEDS, PlaybackController
 from posopt_gui.controllers.session import Session
+from posopt_gui.views.place_slider import STEPS, ClickSlider, SliderRow
 from posopt_gui.views.quiet_editors import QuietCombo
-
-STEPS = 20
-"""Positions of the slider between two waypoints."""
 
 ICON = 20
 """Side of an icon [px]."""
@@ -89,9 +87,8 @@ class TimelineView(QWidget):
         self._tr = session.look.tr
         self.playback = playback or PlaybackController(session, self)
         self._make_actions()
-        self._slider = QSlider(Qt.Orientation.Horizontal)
-        self._slider.setSingleStep(STEPS)
-        self._slider.setPageStep(5 * STEPS)
+        self._slider = ClickSlider()
+        self._slider_row = SliderRow(self._slider)
         self._count = QLabel()
         self._clock = QLabel()
         self._speed = QuietCombo()
@@ -134,15 +131,18 @@ class TimelineView(QWidget):
         self._loop.toggled.connect(playback.set_loop)
 
     def _lay_out(self) -> None:
-        row = QHBoxLayout(self)
-        row.setContentsMargins(8, 4, 8, 4)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 2, 0, 2)
+        column.setSpacing(0)
+        column.addWidget(self._slider_row)
+        row = QHBoxLayout()
+        row.setContentsMargins(8, 0, 8, 0)
         row.setSpacing(2)
+        column.addLayout(row)
         for action in (self._start, self._back, self._play, self._forward, self._end):
             row.addWidget(self._button(action))
-        row.addSpacing(8)
-        row.addWidget(self._slider, 1)
-        row.addSpacing(8)
-        for label, widest in ((self._count, "0000/0000"), (self._clock, "000.0 / 000.0 s")):
+        row.addStretch(1)
+        for label, widest in ((self._count, "0000/0000"), (self._clock, "")):
             label.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
             label.setMinimumWidth(label.fontMetrics().horizontalAdvance(widest))
             row.addWidget(label)
@@ -161,6 +161,7 @@ class TimelineView(QWidget):
         session, playback = self._session, self.playback
         self._slider.valueChanged.connect(self._on_slider)
         self._slider.sliderPressed.connect(playback.pause)
+        self._slider.sliderReleased.connect(playback.settle)
         self._speed.currentIndexChanged.connect(
             lambda index: playback.set_speed(self._speed.itemData(index))
         )
@@ -188,8 +189,14 @@ class TimelineView(QWidget):
         self._speed.setAccessibleName(tr("Pace of the playback"))
         self._slider.setAccessibleName(tr("Place on the path"))
         self._slider.setToolTip(tr("Place on the path"))
-        self._clock.setToolTip(tr("Time from the path length and the feed, links at joint speed"))
+        self._clock.setToolTip(
+            tr(
+                "Time from the path length and the feed, and between passes straight at joint "
+                "speed; approach, retract and ramps are in the estimated cycle"
+            )
+        )
         self._count.setToolTip(tr("Waypoint"))
+        self._on_place(self._session.place)
 
     def retheme(self) -> None:
         """Set all colours again."""
@@ -226,7 +233,7 @@ class TimelineView(QWidget):
     def _on_times(self) -> None:
         count = self._session.waypoints
         with QSignalBlocker(self._slider):
-            self._slider.setRange(0, max(count - 1, 0) * STEPS)
+            self._slider_row.set_count(count)
         for action in self.actions_for_menu:
             action.setEnabled(count > 1)
         self._slider.setEnabled(count > 1)
@@ -241,4 +248,12 @@ class TimelineView(QWidget):
         count = self._session.waypoints
         shown = self._session.cursor + 1 if count else 0
         self._count.setText(f"{shown}/{count}")
-        self._clock.setText(f"{self.playback.time:.1f} / {self.playback.duration:.1f} s")
+        now, whole = f"{self.playback.time:.1f}", f"{self.playback.duration:.1f}"
+        self._clock.setText(self._clock_words(now, whole))
+        widest = self._clock.fontMetrics().horizontalAdvance(self._clock_words(whole, whole))
+        self._clock.setMinimumWidth(widest)
+
+    def _clock_words(self, now: str, whole: str) -> str:
+        if self.playback.linked:
+            return self._tr("Contact and links {now} / {whole} s", now=now, whole=whole)
+        return self._tr("Contact {now} / {whole} s", now=now, whole=whole)

@@ -30,12 +30,11 @@ from posopt_gui.viewmodels.map_colours import (
 )
 from posopt_gui.viewmodels.map_lines import (
     LINE_NAMES,
-    spread,
 )
 from posopt_gui.viewmodels.map_model import (
     extra_cost_scale,
 )
-from posopt_gui.viewmodels.map_readings import FILTER_LABELS, price_words
+from posopt_gui.viewmodels.map_readings import price_words
 from posopt_gui.views.map_palette import palette
 from solver.model.settings import Scheme
 
@@ -105,19 +104,6 @@ def test_colour_tables_hold_what_they_were_made_of():
     assert (np.diff(bright) > 0.0).all()
 
 
-@settings(max_examples=100, deadline=None)
-@given(places=st.lists(st.floats(0.0, 300.0), min_size=1, max_size=8))
-def test_labels_that_are_spread_keep_their_distance_order_and_frame(places):
-    wanted = np.array(places)
-    moved = spread(wanted, 18.0, 0.0, 300.0)
-    order = np.argsort(wanted, kind="stable")
-    assert (np.diff(moved[order]) >= 18.0 - 1e-9).all()
-    assert moved.min() >= -1e-9
-    assert moved.max() <= 300.0 + 1e-9
-    if len(wanted) == 1 or np.diff(np.sort(wanted)).min() >= 18.0:
-        assert moved == pytest.approx(wanted)
-
-
 def plain(text, **values):
     return text.format(**values)
 
@@ -133,7 +119,6 @@ def test_every_text_of_the_map_is_translated():
     for file in (folder.parent / "resources/translations/zh_CN").glob("*.json"):
         known |= json.loads(file.read_text(encoding="utf-8"))
     wanted = {*CLASS_LABELS.values(), *LAYER_LABELS.values(), *LINE_NAMES.values()}
-    wanted |= set(FILTER_LABELS.values())
     for file in [*folder.glob("views/map_*.py"), *folder.glob("viewmodels/map_*.py")]:
         source = file.read_text(encoding="utf-8")
         wanted |= {m[1] for m in re.finditer(r"\btr\(\s*\"([^\"]+)\"", source)}

@@ -264,9 +264,17 @@ def test_the_card_tells_every_filter_of_the_explanation_and_never_overstates_a_c
         assert words.title.startswith(f"Waypoint {waypoint + 1} ")
         for line, one in zip(words.rows[1:], explained.filters, strict=True):
             assert line.passed == one.passed
-            number = float(re.match(r"[+−]?[\d.]+", line.value)[0].replace("−", "-"))
-            if one.unit == "mm":
+            number = float(re.match(r"[+−]?[\d.]+", line.margin)[0].replace("−", "-"))
+            if one.filter is Outcome.COLLISION:
+                # As in the inspector: a clearance, and what it is beyond the safety distance.
+                kept = one.margin - 1000.0 * result.problem.settings.safety_distance
+                assert kept - 0.1 - 1e-9 <= number <= kept + 1e-9
+                found = float(line.value.removesuffix(" mm").replace("−", "-"))
+                assert one.margin - 0.1 - 1e-9 <= found <= one.margin + 1e-9
+            elif one.unit == "mm":
                 assert one.margin - 0.1 - 1e-9 <= number <= one.margin + 1e-9
+        labels = [line.label for line in words.rows]
+        assert len(set(labels)) == len(labels)
 
 
 def test_empty_layers_are_those_without_a_node(results):
@@ -338,14 +346,14 @@ def test_with_wishes_the_answer_is_chosen_and_the_plan_without_them_stays(result
     assert before.lean == pytest.approx(np.degrees(result.sequence.angles[:, 0]))
 
 
-def test_lines_that_look_the_same_are_one_only_where_they_run_on_the_same_page(results):
+def test_lines_on_different_branches_are_never_one(results):
     result = results["groove_hw300"]
     lines = sequence_lines(result, None, ["exact", "f2"])
     first, other = lines
     assert (first.lean == other.lean).all()
     assert first.candidate[0, 2:].tolist() != other.candidate[0, 2:].tolist()
     together, _ = drawn_alike(lines, BEST_OF_ALL, 1, 1)
-    assert [line.names for line in together] == [("exact", "f2")]
+    assert [line.names for line in together] == [("exact",), ("f2",)]
     own = Choice(int(first.candidate[0, 2]), int(first.candidate[0, 3]))
     apart, pages = drawn_alike(lines, own, 1, 1)
     assert len(apart) == 2

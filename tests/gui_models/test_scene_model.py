@@ -27,7 +27,7 @@ from posopt_gui.viewmodels.scene_model import (
     joints_at,
     tcp_trail,
 )
-from posopt_gui.viewmodels.scene_notes import note_lines
+from posopt_gui.viewmodels.scene_notes import candidate_line, note_lines
 from posopt_gui.viewmodels.scene_probe import PoseProbe, Touch
 from posopt_gui.viewmodels.surface_mesh import coloured, shaded
 from posopt_gui.views.camera import PRESETS, Camera, close_up, fitted, picked
@@ -250,6 +250,35 @@ def test_a_lifted_ball_has_no_patch_and_one_in_the_flange_a_red_one(result):
     by = (inside - place[0], 0.0, 0.04)
     report = probe.measure(shifted(result, 20, by), 20)
     assert [(one.touch, one.group) for one in report.patches] == [(Touch.ANOTHER, "flange_top")]
+
+
+def test_a_pose_that_collides_says_how_deep_as_the_explanation_of_its_filters_does(result):
+    candidates = result.candidates
+    probe = PoseProbe(result.problem, candidates.scene)
+    for waypoint, orientation, slot in np.argwhere(candidates.outcome == Outcome.COLLISION)[::60]:
+        ghost = ghost_at(result, int(waypoint), int(orientation), int(slot))
+        report = probe.measure(ghost.joints, int(waypoint))
+        lean = float(candidates.orientations[orientation, 0])
+        told = solver.explain(result.problem, int(waypoint), lean, int(candidates.branches[slot]))
+        (margin,) = (one.margin for one in told.filters if one.filter is Outcome.COLLISION)
+        assert report.clearance * 1e3 == pytest.approx(margin, abs=1e-6)
+        assert report.clearance <= 0.0
+        assert np.linalg.norm(report.points[1] - report.points[0]) == pytest.approx(
+            -report.clearance, abs=1e-5
+        )
+
+
+def test_a_candidate_is_named_with_its_verdict(result):
+    def tr(text, **values):
+        return text.format(**values)
+
+    outcome = result.candidates.outcome
+    waypoint, orientation, slot = map(int, np.argwhere(outcome == Outcome.COLLISION)[0])
+    lean = math.degrees(result.candidates.orientations[orientation, 0])
+    words = candidate_line(result, waypoint, orientation, slot, tr)
+    assert words == (
+        f"Candidate at waypoint {waypoint + 1}, lean {lean:.0f}°: collision".replace("-", "−")
+    )
 
 
 def test_the_notes_name_bodies_in_words_and_contact_that_is_not_allowed(result, cell):
