@@ -74,7 +74,7 @@ class Session(SessionState):
         for line in (self._builds, self._plans, self._wishes, self._checks):
             line.stop()
         self._problem = self._problem_error = self._plan_error = self._path = None
-        self._result = self._answer = self._report = None
+        self._result = self._answer = self._report = self._check_error = None
         self._planned_state = None
         self._asked = ((), ())
         self._place = 0.0
@@ -99,8 +99,9 @@ class Session(SessionState):
         self._plans.submit(lambda monitor: planned_by(state, schemes, monitor))
 
     def stop(self) -> None:
-        """Cancel planning."""
+        """Cancel planning; the plan that stays is checked where planning had stopped its check."""
         self._plans.stop()
+        self._check_again()
 
     def set_compared(self, schemes: tuple[Scheme, ...]) -> None:
         """Choose the schemes that the next plan searches besides."""
@@ -219,6 +220,8 @@ class Session(SessionState):
             # What was let go of has its answer already; only now it counts, and is checked.
             self.result_changed.emit()
             self.check()
+        else:
+            self._check_again()
 
     def _update_stale(self) -> None:
         planned = self._planned_state
@@ -246,6 +249,9 @@ class Session(SessionState):
         self._announce(self.problem_changed)
 
     def _planned(self, planned: Planned) -> None:
+        if self._is_left(planned.state):
+            self._check_again()
+            return
         # An answer that is still being worked out belongs to the plan before.
         self._wishes.stop()
         self._checks.stop()
@@ -253,13 +259,19 @@ class Session(SessionState):
         self._asked = (planned.state.pins, planned.state.regions)
         self._tell_moved_pins(planned)
         self._planned_state, self._result = planned.state, planned.result
-        self._answer, self._plan_error, self._report = planned.answer, None, None
+        self._answer, self._plan_error = planned.answer, None
+        self._report = self._check_error = None
         self._update_stale()
         self._announce_result()
         wishes = (planned.state.pins, planned.state.regions)
         if wishes != (self.document.state.pins, self.document.state.regions):
             self.end_preview()
         self.check()
+
+    def _is_left(self, state: ProjectState) -> bool:
+        """Whether a plan of these inputs came too late: they were left for those of a plan."""
+        fits = self._result is not None and not self._stale
+        return fits and _inputs(state) != _inputs(self.document.state)
 
     def _tell_moved_pins(self, planned: Planned) -> None:
         """A pin holds the number of a waypoint: say where that is another place now."""
@@ -278,6 +290,9 @@ class Session(SessionState):
         if not isinstance(error, PosoptError):
             self._defect(error)
             return
+        if self._is_left(self._ordered):
+            self._check_again()
+            return
         if isinstance(error, InputError):
             self._plan_refused(error)
             return
@@ -285,7 +300,7 @@ class Session(SessionState):
         self._checks.stop()
         self.keep(None)
         self._plan_error = error
-        self._result = self._answer = self._report = None
+        self._result = self._answer = self._report = self._check_error = None
         self._planned_state = self._ordered
         self._update_stale()
         self._announce_result()
@@ -304,6 +319,7 @@ class Session(SessionState):
         self._announce(self.problem_changed)
         words = input_words(error, self.document.state.cell, self.look.tr)
         self.message.emit(Message("error", words))
+        self._check_again()
 
     def _announce_result(self) -> None:
         self._announce(self.result_changed, self.check_changed)
@@ -331,11 +347,17 @@ class Session(SessionState):
     def _answered(self, answer: Replanned | None) -> None:
         self._checks.stop()
         self._answer = answer
-        self._report = None
+        self._report = self._check_error = None
         self.result_changed.emit()
         self.check_changed.emit()
         # While a pin is being dragged the next answer is already on its way.
         if not self._previewing:
+            self.check()
+
+    def _check_again(self) -> None:
+        """Check what has lost its check to planning that came to nothing."""
+        known = self._report is not None or self._check_error is not None
+        if not known and not self._stale and not self.planning and not self._checks.busy:
             self.check()
 
     def _checked(self, report: ProgramReport) -> None:
@@ -346,6 +368,9 @@ class Session(SessionState):
         if not isinstance(error, PosoptError):
             self._defect(error)
             return
+        # A check that cannot be completed has failed.
+        self._check_error = error
+        self.check_changed.emit()
         self.message.emit(Message("warning", self._words_of(error)))
 
     def _words_of(self, error: PosoptError) -> str:

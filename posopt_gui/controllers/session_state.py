@@ -42,6 +42,7 @@ class SessionState(QObject):
         self._result: PlanningResult | None = None
         self._answer: Replanned | None = None
         self._report: ProgramReport | None = None
+        self._check_error: PosoptError | None = None
         self._stale = self._previewing = False
         self._place = 0.0
         self._hover: Hover | None = None
@@ -91,6 +92,11 @@ class SessionState(QObject):
     def report(self) -> ProgramReport | None:
         """Checks of the program of the shown sequence."""
         return self._report
+
+    @property
+    def check_error(self) -> PosoptError | None:
+        """Why the checks could not be completed, and so have failed."""
+        return self._check_error
 
     @property
     def stale(self) -> bool:

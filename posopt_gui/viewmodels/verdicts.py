@@ -58,8 +58,13 @@ def _worth(result: PlanningResult, sequence: Sequence, translate: Translate) -> 
     return Note("info", text)
 
 
-def gate_words(report: ProgramReport, translate: Translate) -> tuple[str, str]:
-    """Verdict of the program's checks in one line, and whether it is 'good' or 'bad'."""
+def gate_words(report: ProgramReport | None, translate: Translate) -> tuple[str, str]:
+    """Verdict of the program's checks in one line, and whether it is 'good' or 'bad'.
+
+    Without a report they could not be completed, and so have failed.
+    """
+    if report is None:
+        return translate("Program: the checks could not be completed"), "bad"
     failed, count = len(report.failed), len(report.checks)
     if not failed:
         return translate("Program: {count} checks passed", count=count), "good"

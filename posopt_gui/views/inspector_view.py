@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QScrollArea, QVBoxLay
 
 from posopt_gui.controllers.pose_facts import PoseExplainer
 from posopt_gui.controllers.session import Session
+from posopt_gui.viewmodels.error_words import error_words
 from posopt_gui.viewmodels.export_model import waypoint_of
 from posopt_gui.viewmodels.inspector_model import (
     ClearanceWords,
@@ -24,6 +25,7 @@ from posopt_gui.viewmodels.inspector_model import (
 )
 from posopt_gui.viewmodels.results_model import check_words, totals
 from posopt_gui.viewmodels.trouble_model import Trouble, trouble_of
+from posopt_gui.viewmodels.verdicts import gate_words
 from posopt_gui.views.joint_bars import JointBars
 from posopt_gui.views.label_grid import LabelGrid, Text
 from posopt_gui.views.refresh import Refresh
@@ -308,6 +310,17 @@ class InspectorView(QScrollArea):
         self._show_totals()
         report = session.report
         self.gate.setVisible(session.sequence is not None)
+        if session.check_error is not None:
+            words, _ = gate_words(None, tr)
+            reason = error_words(session.check_error, tr)
+            mark = Text(STATES["bad"], theme.error)
+            self.gate.set_rows(
+                [
+                    (mark, Text(words, theme.error)),
+                    (Text("", theme.error), Text(reason, theme.text)),
+                ]
+            )
+            return
         if report is None:
             self.gate.set_rows(
                 [(Text("…", theme.muted), Text(tr("Not checked yet."), theme.muted))]

@@ -68,9 +68,10 @@ class StatusLine(QObject):
         """Say in a line whether the program passes; nothing where that is not known."""
         session = self._session
         report = session.report
-        known = report is not None and not session.stale and not session.planning
+        known = report is not None or session.check_error is not None
+        known = known and not session.stale and not session.planning
         self.gate.setVisible(known)
-        if report is None or not known:
+        if not known:
             return
         words, state = gate_words(report, self._tr)
         theme = session.look.theme
