@@ -26,6 +26,7 @@ from posopt_gui.views.places import Places
 from posopt_gui.views.shell_parts import RecentMenu
 from posopt_gui.views.status_line import StatusLine
 from posopt_gui.views.tool_bar import ToolBar
+from posopt_gui.views.typed import apply_typed
 from posopt_gui.workers.jobs import JobLine, end_all
 from solver.model.scheme import Scheme
 
@@ -145,6 +146,7 @@ class MainWindow(QMainWindow):
         self._link_axes()
         self._fill_menus()
         self.inspector.key_wanted.connect(self._show_field)
+        self.files.begun.connect(self.setup.forget_typed)
         self.files.path_refused.connect(lambda path, _: self.setup.load_path(str(path)))
         self.retranslate()
         button = self._bar.widgetForAction(self.actions_table["export"])
@@ -189,10 +191,10 @@ class MainWindow(QMainWindow):
                 "export": self.show_export,
                 "report": self.save_report,
                 "quit": self.close,
-                "undo": session.document.undo,
+                "undo": self._undo,
                 "redo": session.document.redo,
                 "clear_wishes": session.clear_wishes,
-                "plan": session.plan,
+                "plan": self._plan,
                 "stop": session.stop,
                 "live": self._set_live,
                 "compare": self._set_compared,
@@ -209,8 +211,12 @@ class MainWindow(QMainWindow):
         session.planning_changed.connect(self._on_planning)
         session.state_changed.connect(self._on_state)
         session.document.history_changed.connect(self._on_state)
-        session.result_changed.connect(self._on_result)
+        for changed in (
+            session.result_changed, session.stale_changed, session.answering_changed
+        ):  # fmt: skip
+            changed.connect(self._on_result)
         self.files.title_changed.connect(self._on_title)
+        self.files.typed_wanted.connect(lambda: apply_typed(self))
         self.files.recent_changed.connect(self._show_recent)
         look.language_changed.connect(self.retranslate)
         look.theme_changed.connect(self.retheme)
@@ -254,6 +260,8 @@ class MainWindow(QMainWindow):
 
     def show_export(self) -> None:
         """Open the export dialog, or bring it to the front."""
+        if not self.apply_typed():
+            return
         self.hints.close("export")
         dialog = self.export_dialog()
         dialog.show()
@@ -262,13 +270,15 @@ class MainWindow(QMainWindow):
 
     def save_report(self) -> None:
         """Write the HTML report with pictures of the panels."""
+        if not self.apply_typed():
+            return
         pictures = {
             "map": self.map.grab_image(),
             "curves": self.curves.grab().toImage(),
             "scene": self.scene.grab_image(),
         }
         dialog = self._dialogs.get("export")
-        form = dialog.exporter.form if dialog is not None else None
+        form = dialog.exporter.form_of_plan if dialog is not None else None
         self.files.save_report(pictures, form)
 
     def open_guide(self) -> None:
@@ -329,18 +339,36 @@ class MainWindow(QMainWindow):
         self.files.ended()
         event.accept()
 
+    def apply_typed(self) -> bool:
+        """Apply what is being typed; False where a field holds a text that is not taken."""
+        apply_typed(self)
+        row = self.setup.refused_row() if self._views else None
+        if row is not None:
+            self.session.say(Message("warning", row.refusal_text()))
+            self._show_field(row.field.key)
+        return row is None
+
+    def _undo(self) -> None:
+        apply_typed(self)
+        self.session.document.undo()
+
+    def _plan(self) -> None:
+        if self.apply_typed():
+            self.session.plan()
+
     def _set_live(self, on: bool) -> None:
         self.session.live = on
+        apply_typed(self)
         if on and self.session.stale:
-            self.session.plan()
+            self._plan()
 
     def _set_compared(self, on: bool) -> None:
         self.session.set_compared(SCHEMES if on else (Scheme.EXACT, Scheme.F2))
-        self.session.plan()
+        self._plan()
 
     def _choose_scheme(self, row: int) -> None:
         self.session.document.set_value("settings.scheme", SCHEMES[row].value, "Scheme")
-        self.session.plan()
+        self._plan()
 
     def _on_planning(self, busy: bool) -> None:
         self.actions_table["stop"].setEnabled(busy)
@@ -362,7 +390,8 @@ class MainWindow(QMainWindow):
         mark = "*" if self.session.document.modified else ""
         self.setWindowTitle(f"{self.files.name}{mark} - {TITLE}")
 
-    def _on_result(self) -> None:
+    def _on_result(self, *_: object) -> None:
         session = self.session
         self.actions_table["export"].setEnabled(session.result is not None)
-        self.actions_table["report"].setEnabled(session.result is not None and bool(self._views))
+        settled = session.settled_result is not None
+        self.actions_table["report"].setEnabled(settled and bool(self._views))

@@ -49,11 +49,15 @@ class ModelError(InputError):
 
 
 class UnknownNameError(InputError):
-    """A name that the catalogue does not hold; the sentence lists what it does hold."""
+    """A name that the catalogue does not hold; the sentence lists what it does hold, or a few."""
+
+    LISTED = 6
+    """Most names that are listed; of more, the first three are."""
 
     def __init__(self, kind: str, name: str, known: tuple[str, ...]) -> None:
         self.kind, self.name, self.known = kind, name, known
-        super().__init__(f"no {kind} is called {name!r} (known: {', '.join(known) or 'none'})")
+        shown = known if len(known) <= self.LISTED else (*known[:3], "...")
+        super().__init__(f"no {kind} is called {name!r} (known: {', '.join(shown) or 'none'})")
 
 
 class PlanningError(PosoptError):

@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject, QThreadPool, QTimer, Signal
 
 from posopt_gui.controllers.folders import first_folder
 from posopt_gui.controllers.session import CLOSING_TIME, Message, Session
-from posopt_gui.viewmodels.error_words import error_words
+from posopt_gui.viewmodels.error_words import file_error_words
 from posopt_gui.viewmodels.export_model import (
     ExportForm,
     ExportStage,
@@ -51,6 +51,8 @@ class Exporter(QObject):
         self._named = False
         self._folder = first_folder()
         self._key: tuple[object, ...] | None = None
+        self._written_of: tuple[object, ...] | None = None
+        self._formed_for: tuple[object, object] | None = None
         self._stamped = ""
         self._pool = QThreadPool(self)
         self._pool.setMaxThreadCount(2)
@@ -69,6 +71,8 @@ class Exporter(QObject):
         session.problem_changed.connect(self.refresh)
         session.stale_changed.connect(self.refresh)
         session.planning_changed.connect(self.refresh)
+        session.answering_changed.connect(self.refresh)
+        session.opened.connect(self._begin_anew)
 
     @property
     def situation(self) -> Situation:
@@ -79,6 +83,18 @@ class Exporter(QObject):
     def form(self) -> ExportForm:
         """What was chosen."""
         return self._now.form
+
+    @property
+    def form_of_plan(self) -> ExportForm | None:
+        """What was chosen for the plan as it is shown now, None where it was for another one."""
+        plan = (self._session.result, self._session.answer)
+        return self.form if self._formed_for == plan else None
+
+    @property
+    def program(self) -> tuple[object, ...] | None:
+        """What the shown program is made of and where it goes, to be compared; None without one."""
+        key = self._wanted()
+        return None if key is None else (*key, self.form.path, self.form.reason.strip())
 
     @property
     def folder(self) -> Path:
@@ -102,6 +118,17 @@ class Exporter(QObject):
             self._drafts.stop()
             self._orders.stop()
             self._key = None
+
+    def _begin_anew(self) -> None:
+        """Nothing that was chosen for one project holds for another."""
+        for line in (self._drafts, self._orders):
+            line.stop()
+        self._timer.stop()
+        self._named, self._stamped = False, ""
+        self._key = self._formed_for = None
+        # What is being written goes on, and is told of as another program than the shown one.
+        self._now = Situation(writing=self._now.writing)
+        self.refresh()
 
     def set_post(self, post: str) -> None:
         """Choose the kind of file; the name keeps its stem."""
@@ -127,7 +154,7 @@ class Exporter(QObject):
 
     def _set_form(self, form: ExportForm) -> None:
         if form != self.form:
-            self._set(form=form, order_fault=None, reason_fault="", write_fault="", written=None)
+            self._set(form=form, order_fault=None, reason_fault="", write_fault="")
             self.refresh()
 
     def target(self, *, override: bool = False) -> Path:
@@ -143,18 +170,22 @@ class Exporter(QObject):
             return
         self._follow()
         key = self._wanted()
-        if key is None:
-            self._timer.stop()
+        if key is not None:
+            self._formed_for = (self._session.result, self._session.answer)
+        if key is None or key != self._key:
+            # What is still being drafted or looked at belongs to another program.
             self._drafts.stop()
-            self._key = None
-            self._set(current=False, fault="")
-        elif key != self._key:
+            self._orders.stop()
+            self._timer.stop()
             self._key = key
-            self._set(current=False, fault="", order_fault=None, written=None, write_fault="")
-            self._timer.start()
+            self._set(current=False, fault="")
+            if key is not None:
+                self._set(order_fault=None, write_fault="")
+                self._timer.start()
         elif self._now.order_fault is None:
             self._check_order()
             self._stamp_reason()
+        self._set(outdated=self.program != self._written_of)
         self.changed.emit()
 
     def _stamp_reason(self) -> None:
@@ -174,6 +205,7 @@ class Exporter(QObject):
             "planned": result is not None,
             "planning": session.planning,
             "stale": session.stale,
+            "answering": session.answering,
             "blocked": answer.reason if answer is not None and answer.sequence is None else "",
         }
         if result is None:
@@ -190,36 +222,41 @@ class Exporter(QObject):
 
     def _wanted(self) -> tuple[object, ...] | None:
         """What a draft would be made of, None where none can be made."""
-        session, now = self._session, self._now
-        if not now.planned or now.stale or now.planning or now.blocked:
+        session, form = self._session, self.form
+        if session.planning or session.settled_result is None:
             return None
-        form = now.form
-        accepted = form.accepted if now.least < now.required else None
-        parts = (form.post, form.simplify, accepted, Path(form.path).stem)
+        parts = (form.post, form.simplify, form.accepted, Path(form.path).stem)
         return (session.result, session.answer, *parts)
 
     def _submit(self) -> None:
-        result, form = self._session.chosen_result, self.form
-        if result is None or self._key is None:
+        result, form = self._session.settled_result, self.form
+        if result is None or self._key is None or self._wanted() != self._key:
             return
         self._stamped = self._reason
         self._drafts.submit(lambda monitor: _draft(result, form, monitor))
         self._check_order()
 
     def _check_order(self) -> None:
-        result, form = self._session.chosen_result, self.form
+        result, form = self._session.settled_result, self.form
         if result is not None:
             self._orders.submit(lambda _: _order_faults(result, form))
 
     def export(self, *, override: bool = False) -> None:
-        """Write the program; with `override` although checks fail, for the typed reason."""
+        """Write the program; with `override` although checks fail, for the typed reason.
+
+        Nothing is written but what is shown: a plan or wishes that changed are drafted first.
+        """
+        self.refresh()
         wanted = ExportStage.REFUSED if override else ExportStage.PASSED
-        result, form = self._session.chosen_result, self.form
+        result, form = self._session.settled_result, self.form
         if result is None or self._now.stage is not wanted or self._now.order_fault != "":
+            return
+        if self._key is None or self._wanted() != self._key:
             return
         self._stop = threading.Event()
         stop = self._stop
-        self._set(writing=True, written=None, write_fault="")
+        self._written_of = self.program
+        self._set(writing=True, written=None, write_fault="", outdated=False)
         self._writes.submit(
             lambda monitor: _write(result, form, _Stoppable(monitor, stop), override=override)
         )
@@ -254,14 +291,14 @@ class Exporter(QObject):
             self.changed.emit()
 
     def _wrote(self, written: WrittenProgram) -> None:
-        self._set(written=written)
+        self._set(written=written, outdated=self.program != self._written_of)
         self.written.emit(written)
         self.changed.emit()
 
     def _write_failed(self, error: object) -> None:
         if isinstance(error, PosoptError):
             self._set(write_fault=str(error))
-            self._session.say(Message("error", error_words(error, self._session.look.tr)))
+            self._session.say(Message("error", file_error_words(error, self._session.look.tr)))
             self.changed.emit()
         else:
             self._defect(error)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Mapping
-from enum import Enum, auto
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final
 
 from PySide6.QtCore import QObject, QSettings, QThreadPool, Signal
 
+from posopt_gui.controllers.file_mark import mark_of
 from posopt_gui.controllers.folders import first_folder
 from posopt_gui.controllers.guide import guide_file
 from posopt_gui.controllers.path_import import (
@@ -19,14 +20,16 @@ from posopt_gui.controllers.path_import import (
     path_for,
     state_with_path,
 )
+from posopt_gui.controllers.questions import Choice, Clash, NoQuestions, Questions
 from posopt_gui.controllers.report import picture_bytes, report_of
 from posopt_gui.controllers.session import CLOSING_TIME, Message, Session
 from posopt_gui.document.project import ProjectState, state_of_cell
-from posopt_gui.document.project_file import SUFFIX, load_project, save_project
+from posopt_gui.document.project_file import SUFFIX, load_project, project_bytes
 from posopt_gui.viewmodels.check_sentences import sentence
 from posopt_gui.viewmodels.error_words import file_words
 from posopt_gui.workers.jobs import JobLine
 from solver.errors import InputError, Place, PosoptError
+from solver.io.atomic import write_atomically
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QImage
@@ -38,43 +41,6 @@ CELL_SUFFIX: Final = ".toml"
 RECENT_KEY: Final = "files/recent"
 FOLDER_KEY: Final = "files/folder"
 RECENT_LIMIT: Final = 10
-
-
-class Choice(Enum):
-    """What is to become of unsaved work."""
-
-    SAVE = auto()
-    DISCARD = auto()
-    CANCEL = auto()
-
-
-class Questions(Protocol):
-    """What only the person can answer; a name is '' where nothing was chosen."""
-
-    def unsaved(self, name: str) -> Choice:
-        """Ask what to do with changes that were not saved."""
-
-    def open_name(self, folder: str) -> str:
-        """Ask which project, cell or path to open."""
-
-    def save_name(self, proposal: str, suffix: str) -> str:
-        """Ask where to save; an existing file was agreed to be replaced."""
-
-
-class NoQuestions:
-    """Nobody is there to answer: nothing is chosen and nothing thrown away."""
-
-    def unsaved(self, _name: str) -> Choice:
-        """Keep the work."""
-        return Choice.CANCEL
-
-    def open_name(self, _folder: str) -> str:
-        """Choose nothing."""
-        return ""
-
-    def save_name(self, _proposal: str, _suffix: str) -> str:
-        """Choose nothing."""
-        return ""
 
 
 def state_of_argument(file: str | None) -> tuple[ProjectState, Path | None]:
@@ -104,6 +70,8 @@ class Files(QObject):
     `title_changed` tells that the name or the mark of changes is another one; `recent_changed`
     that the list is. `path_taken` tells that a path file was taken into the project;
     `path_refused` carries one that could not be read and the error, for a preview of its columns.
+    `typed_wanted` comes before the inputs are saved or left: what is still being typed is to be
+    applied; `begun` where they are another project's from here on.
     """
 
     title_changed = Signal()
@@ -111,6 +79,8 @@ class Files(QObject):
     path_taken = Signal()
     path_refused = Signal(object, object)
     report_saved = Signal(object)
+    typed_wanted = Signal()
+    begun = Signal()
 
     def __init__(
         self,
@@ -123,6 +93,7 @@ class Files(QObject):
         self._session, self._settings = session, settings
         self.ask: Questions = ask or NoQuestions()
         self._path: Path | None = None
+        self._mark: bytes | None = None
         self._pool = QThreadPool(self)
         self._imports = JobLine(self._pool, self)
         self._imports.done.connect(self._imported)
@@ -179,6 +150,7 @@ class Files(QObject):
         """Take note of the file that the document was read from."""
         self._path = path
         if path is not None:
+            self._mark = mark_of(path)
             self._note(path)
         self.title_changed.emit()
 
@@ -214,6 +186,8 @@ class Files(QObject):
         return self._open(path, project=suffix == SUFFIX)
 
     def _open(self, path: Path, *, project: bool) -> bool:
+        # Before it is read: what is written meanwhile is another one's, too.
+        mark = mark_of(path) if project else None
         try:
             state = load_project(path) if project else state_of_cell(path)
         except PosoptError as error:
@@ -222,16 +196,27 @@ class Files(QObject):
             return False
         if not self._may_leave():
             return False
-        self._begin(state, path if project else None)
+        self._begin(state, path if project else None, mark)
         self._note(path)
         return True
 
     def save(self) -> bool:
         """Save under the name that the project has, or ask for one."""
-        return self.save_as() if self._path is None else self._save(self._path)
+        self.typed_wanted.emit()
+        if self._path is None:
+            return self.save_as()
+        mark = mark_of(self._path)
+        if mark is not None and mark != self._mark:
+            match self.ask.written_meanwhile(self._path.name):
+                case Clash.OTHER_NAME:
+                    return self.save_as()
+                case Clash.CANCEL:
+                    return False
+        return self._save(self._path)
 
     def save_as(self) -> bool:
         """Ask for a name and save under it."""
+        self.typed_wanted.emit()
         proposal = self._path or self.folder / f"{self.name}{SUFFIX}"
         name = self.ask.save_name(str(proposal), SUFFIX)
         return bool(name) and self._save(with_suffix(Path(name), SUFFIX))
@@ -265,9 +250,18 @@ class Files(QObject):
         return ""
 
     def save_report(self, pictures: Mapping[str, QImage], form: ExportForm | None = None) -> bool:
-        """Ask for a name, and write the HTML report of the shown sequence."""
-        result = self._session.chosen_result
+        """Ask for a name, and write the HTML report of the shown sequence.
+
+        False where no name was given, and where the sequence is not that of the inputs, pins and
+        regions as they are now.
+        """
+        result = self._session.settled_result
         if result is None:
+            words = (
+                "No report is saved: there is no sequence for the inputs, pins and forbidden "
+                "regions as they are now."
+            )
+            self._session.say(Message("warning", self._session.look.tr(words)))
             return False
         proposal = self.folder / f"{result.problem.program.name}_report.html"
         name = self.ask.save_name(str(proposal), ".html")
@@ -283,6 +277,7 @@ class Files(QObject):
         return True
 
     def _may_leave(self) -> bool:
+        self.typed_wanted.emit()
         if not self.modified:
             return True
         match self.ask.unsaved(self.name):
@@ -293,9 +288,10 @@ class Files(QObject):
             case _:
                 return False
 
-    def _begin(self, state: ProjectState, path: Path | None) -> None:
+    def _begin(self, state: ProjectState, path: Path | None, mark: bytes | None = None) -> None:
         self._imports.stop()
-        self._path = path
+        self.begun.emit()
+        self._path, self._mark = path, mark
         self._session.open(state)
         self._session.start()
         self.title_changed.emit()
@@ -303,11 +299,12 @@ class Files(QObject):
     def _save(self, path: Path) -> bool:
         path = path.absolute()
         try:
-            save_project(self._session.document.state, path)
+            data = project_bytes(self._session.document.state)
+            write_atomically(path, data)
         except (PosoptError, ValueError, TypeError) as error:
             self._failed(error)
             return False
-        self._path = path
+        self._path, self._mark = path, hashlib.sha256(data).digest()
         self._session.document.mark_saved()
         self._note(path)
         self.title_changed.emit()

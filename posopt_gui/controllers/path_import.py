@@ -27,14 +27,12 @@ def is_path_file(file: str | Path) -> bool:
 
 
 def state_with_path(state: ProjectState, name: str, data: bytes) -> ProjectState:
-    """The state with a path file in place of its path; what else is said of the path stays."""
+    """The state with a path file in place of its path; what else is said of paths stays."""
     # What is imported here takes a moment; the window is on screen before.
+    from posopt_gui.viewmodels.path_preview import without_frame  # noqa: PLC0415
     from posopt_gui.viewmodels.project_files import beside_the_path  # noqa: PLC0415
 
-    path = dict(state.cell.get("path") or {})
-    for key in ("line", "parametric"):
-        path.pop(key, None)
-    cell = {**state.cell, "path": {**path, "file": name}}
+    cell = {**state.cell, "path": without_frame(state.cell, name)}
     files = {**beside_the_path(state.files), name: data}
     return replace(state, cell=cell, files=files, pins=(), regions=())
 

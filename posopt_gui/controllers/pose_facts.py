@@ -44,6 +44,9 @@ class PoseExplainer(QObject):
 
     def ask(self, result: PlanningResult, pose: Pose) -> None:
         """Explain a pose as soon as it is looked at for a moment."""
+        if not 0 <= pose.waypoint < len(result.problem.toolpath):
+            self.forget()
+            return
         if self.explanation(result, pose) is not None:
             self._timer.stop()
             self._wanted = self._of

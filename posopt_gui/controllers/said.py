@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from solver.candidates.generate import CandidateSet
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,6 +17,12 @@ class Hover:
     orientation: int
     branch: int
     turn: int | None = None
+
+    def stands_in(self, candidates: CandidateSet) -> bool:
+        """Whether these candidates have such a cell; those of another plan may not."""
+        cell = (self.waypoint, self.orientation, self.branch)
+        shape = candidates.outcome.shape
+        return all(0 <= index < size for index, size in zip(cell, shape, strict=True))
 
 
 @dataclass(frozen=True, slots=True)

@@ -62,6 +62,8 @@ class Session(SessionState):
         self._timer.setInterval(BUILD_DELAY)
         self._timer.timeout.connect(self._build)
         self._seen = document.state
+        for signal in (self.state_changed, self.result_changed, self._wishes.busy_changed):
+            signal.connect(self._tell_answering)
         document.changed.connect(self._on_document)
 
     @property
@@ -81,6 +83,7 @@ class Session(SessionState):
         self.set_hover(None)
         self.keep(None)
         self.document.reset(state, saved=saved)
+        self.opened.emit()
         self.problem_changed.emit()
         self.result_changed.emit()
         self.check_changed.emit()
@@ -190,7 +193,7 @@ class Session(SessionState):
         """Check the program of the shown sequence, off the window's thread."""
         self._checks.stop()
         result = self.chosen_result
-        if result is None or (self._answer is not None and self._answer.sequence is None):
+        if result is None:
             return
         self._checks.submit(lambda monitor: checked_by(result, monitor))
 
@@ -255,8 +258,9 @@ class Session(SessionState):
         # An answer that is still being worked out belongs to the plan before.
         self._wishes.stop()
         self._checks.stop()
+        self.set_hover(None)
         self.keep(None)
-        self._asked = (planned.state.pins, planned.state.regions)
+        self._asked = self._answered_wishes = (planned.state.pins, planned.state.regions)
         self._tell_moved_pins(planned)
         self._planned_state, self._result = planned.state, planned.result
         self._answer, self._plan_error = planned.answer, None
@@ -298,6 +302,7 @@ class Session(SessionState):
             return
         self._wishes.stop()
         self._checks.stop()
+        self.set_hover(None)
         self.keep(None)
         self._plan_error = error
         self._result = self._answer = self._report = self._check_error = None
@@ -346,7 +351,7 @@ class Session(SessionState):
 
     def _answered(self, answer: Replanned | None) -> None:
         self._checks.stop()
-        self._answer = answer
+        self._answer, self._answered_wishes = answer, self._asked
         self._report = self._check_error = None
         self.result_changed.emit()
         self.check_changed.emit()

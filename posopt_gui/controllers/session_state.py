@@ -11,9 +11,12 @@ from posopt_gui.controllers.said import Hover
 from solver.model.scheme import Scheme
 
 if TYPE_CHECKING:
+    from posopt_gui.document.document import Document
+    from posopt_gui.workers.jobs import JobLine
     from solver.analysis.result import PlanningResult, Sequence
     from solver.errors import PosoptError
     from solver.model.problem import PlanningProblem
+    from solver.model.wishes import Pin, Region
     from solver.pipeline.program_check import ProgramReport
     from solver.pipeline.replanning import Replanned
 
@@ -33,6 +36,11 @@ class SessionState(QObject):
     progress = Signal(str, int, int)
     message = Signal(object)
     check_changed = Signal()
+    answering_changed = Signal(bool)
+    opened = Signal()
+
+    document: Document
+    _wishes: JobLine
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -43,7 +51,8 @@ class SessionState(QObject):
         self._answer: Replanned | None = None
         self._report: ProgramReport | None = None
         self._check_error: PosoptError | None = None
-        self._stale = self._previewing = False
+        self._stale = self._previewing = self._told_answering = False
+        self._answered_wishes: tuple[tuple[Pin, ...], tuple[Region, ...]] = ((), ())
         self._place = 0.0
         self._hover: Hover | None = None
         self._kept: Hover | None = None
@@ -82,11 +91,36 @@ class SessionState(QObject):
 
     @property
     def chosen_result(self) -> PlanningResult | None:
-        """The plan with the shown sequence as its own: what is exported."""
-        if self._result is None or self._answer is None or self._answer.sequence is None:
+        """The plan with the shown sequence as its own; None where none keeps to the wishes."""
+        if self._result is None or self._answer is None:
             return self._result
+        if self._answer.sequence is None:
+            return None
         sequences = {**self._result.sequences, Scheme.EXACT: self._answer.sequence}
         return replace(self._result, sequences=sequences, scheme=Scheme.EXACT)
+
+    @property
+    def settled_result(self) -> PlanningResult | None:
+        """The chosen result where it is that of the inputs, pins and regions as they are now.
+
+        This alone is exported and reported: None while anything of it is out of date, is still
+        being answered, or is only tried by a drag.
+        """
+        return None if self._stale or self.answering else self.chosen_result
+
+    @property
+    def answering(self) -> bool:
+        """Whether the shown sequence is not (yet) the answer to the document's wishes."""
+        if self._result is None:
+            return False
+        wishes = (self.document.state.pins, self.document.state.regions)
+        return self._previewing or self._wishes.busy or self._answered_wishes != wishes
+
+    def _tell_answering(self, *_: object) -> None:
+        answering = self.answering
+        if answering != self._told_answering:
+            self._told_answering = answering
+            self.answering_changed.emit(answering)
 
     @property
     def report(self) -> ProgramReport | None:

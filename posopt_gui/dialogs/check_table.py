@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from PySide6.QtCore import QModelIndex, QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QModelIndex, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QBrush, QColor, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -51,7 +51,12 @@ class CheckTable(QTableWidget):
         header.setHighlightSections(False)
         header.setStretchLastSection(True)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.ResizeToContents)
-        header.sectionResized.connect(self.resizeRowsToContents)
+        # The last column gets its width after the others: rows are fitted when all have theirs.
+        self._fitting = QTimer(self)
+        self._fitting.setSingleShot(True)
+        self._fitting.setInterval(0)
+        self._fitting.timeout.connect(self.resizeRowsToContents)
+        header.sectionResized.connect(lambda *_: self._fitting.start())
         self.clicked.connect(self._choose)
         self.activated.connect(self._choose)
 
@@ -59,8 +64,28 @@ class CheckTable(QTableWidget):
         """Fill the table; `old` rows are dimmed, since they belong to something before."""
         if (rows, old) == (self._rows, self._old):
             return
+        chosen, anew = self._chosen_name(), _outcomes(rows) != _outcomes(self._rows)
         self._rows, self._old = rows, old
         self._fill()
+        self._choose_again(chosen, anew=anew)
+
+    def _chosen_name(self) -> str:
+        chosen = self.selectionModel().selectedRows()
+        place = chosen[0].row() if chosen else -1
+        return self._rows[place].name if 0 <= place < len(self._rows) else ""
+
+    def _choose_again(self, name: str, *, anew: bool) -> None:
+        """Keep a chosen check by its name; what newly failed is shown and chosen first."""
+        names = [row.name for row in self._rows]
+        failed = bool(self._rows) and not self._rows[0].passed
+        place = names.index(name) if name in names else -1
+        if anew and failed and not self._old:
+            place = 0
+        scrolled = self.verticalScrollBar().value()
+        self.setCurrentIndex(QModelIndex())
+        if place >= 0:
+            self.selectRow(place)
+        self.verticalScrollBar().setValue(0 if anew else scrolled)
 
     def retranslate(self) -> None:
         """Set the headers in the chosen language; the rows come with their words."""
@@ -88,6 +113,7 @@ class CheckTable(QTableWidget):
                     item.setFont(font)
                 self.setItem(number, column, item)
         self.resizeRowsToContents()
+        self._fitting.start()
 
     def _brush(self, row: CheckRow, column: int) -> QBrush:
         theme = self._look.theme
@@ -113,3 +139,8 @@ class CheckTable(QTableWidget):
             for column, (share, widest) in WIDTHS.items():
                 header.resizeSection(column, min(room * share // 100, widest))
         self.resizeRowsToContents()
+        self._fitting.start()
+
+
+def _outcomes(rows: tuple[CheckRow, ...]) -> tuple[tuple[str, bool], ...]:
+    return tuple((row.name, row.passed) for row in rows)

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 
 from posopt_gui.controllers.export import Exporter
 from posopt_gui.controllers.files import with_suffix
-from posopt_gui.controllers.session import Session
+from posopt_gui.controllers.session import Message, Session
 from posopt_gui.dialogs.check_table import CheckTable
 from posopt_gui.dialogs.export_form import ExportFormPanel
 from posopt_gui.dialogs.export_style import style_sheet
@@ -187,8 +187,14 @@ class ExportDialog(QDialog):
 
     def _export(self, _checked: bool = False, *, override: bool = False) -> None:
         target = self.exporter.target(override=override)
-        if not target.exists() or self.replaces(target):
+        program = self.exporter.program
+        if target.exists() and not self.replaces(target):
+            return
+        if self.exporter.program == program:
             self.exporter.export(override=override)
+            return
+        words = "The program changed while you were asked: look at it and export it again."
+        self._session.say(Message("warning", self._tr(words)))
 
     def _browse(self) -> None:
         form = self.exporter.form

@@ -179,15 +179,16 @@ class ExportFormPanel(QFrame):
     def _show_clearance(self, now: Situation, view: ExportView) -> None:
         for part in (self._clearance_label, self.accept, self.clearance):
             part.setVisible(view.asks_clearance)
+        chosen = now.form.accepted
+        with QSignalBlocker(self.accept):
+            self.accept.setChecked(chosen is not None)
         if not view.asks_clearance:
             return
         asked, least = now.required * MM_PER_M, _down(now.least)
         words = "Accept less than the {asked} mm asked (the plan keeps {least} mm):"
         self.accept.setText(self._look.tr(words, asked=f"{asked:g}", least=f"{least:.1f}"))
-        chosen = now.form.accepted
         self.clearance.setEnabled(chosen is not None)
-        with QSignalBlocker(self.accept), QSignalBlocker(self.clearance):
-            self.accept.setChecked(chosen is not None)
+        with QSignalBlocker(self.clearance):
             self.clearance.setMaximum(asked)
             shown = least if chosen is None else chosen * MM_PER_M
             if shown > 0.0:

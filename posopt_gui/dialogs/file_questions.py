@@ -6,8 +6,9 @@ from pathlib import Path
 
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
-from posopt_gui.controllers.files import CELL_SUFFIX, Choice, with_suffix
+from posopt_gui.controllers.files import CELL_SUFFIX, with_suffix
 from posopt_gui.controllers.path_import import PATH_SUFFIXES
+from posopt_gui.controllers.questions import Choice, Clash
 from posopt_gui.document.project_file import SUFFIX
 from posopt_gui.look import Look
 
@@ -36,6 +37,26 @@ class FileQuestions:
         if clicked is save:
             return Choice.SAVE
         return Choice.DISCARD if clicked is discard else Choice.CANCEL
+
+    def written_meanwhile(self, name: str) -> Clash:
+        """Ask what to do with a project file that is no longer as it was read or saved here."""
+        box = QMessageBox(self._parent)
+        box.setIcon(QMessageBox.Icon.Warning)
+        box.setWindowTitle("posopt")
+        words = "{name} was changed by another window or program since it was opened or saved here."
+        box.setText(self._tr(words, name=name))
+        box.setInformativeText(self._tr("Replacing it loses what was saved there."))
+        role = QMessageBox.ButtonRole
+        other = box.addButton(self._tr("Save as…"), role.AcceptRole)
+        replace = box.addButton(self._tr("Replace"), role.DestructiveRole)
+        cancel = box.addButton(self._tr("Cancel"), role.RejectRole)
+        box.setDefaultButton(other)
+        box.setEscapeButton(cancel)
+        box.exec()
+        clicked = box.clickedButton()
+        if clicked is other:
+            return Clash.OTHER_NAME
+        return Clash.REPLACE if clicked is replace else Clash.CANCEL
 
     def open_name(self, folder: str) -> str:
         """Ask which project, cell or path to open."""

@@ -27,6 +27,7 @@ from posopt_gui.viewmodels.error_words import error_words
 from posopt_gui.viewmodels.form_fields_path import common_fields, orientation_fields, source_fields
 from posopt_gui.viewmodels.form_types import Cell, Field, at
 from posopt_gui.viewmodels.path_preview import PathPreview, path_table
+from posopt_gui.viewmodels.path_words import path_words
 from posopt_gui.views.choice_edit import ChoiceEdit
 from posopt_gui.views.field_widgets import FieldRow, structure
 from posopt_gui.views.flag_edit import FlagEdit
@@ -240,12 +241,10 @@ class PathDialog(QDialog):
         if sentence:
             self._sentence.setText(sentence)
         elif path is not None:
-            self._sentence.setText(
-                self._tr(
-                    "Waypoints: {count} · passes: {passes} · frame: {frame}",
-                    count=len(path), passes=len(path.passes), frame=path.frame.value,
-                )
-            )  # fmt: skip
+            self._sentence.setText(path_words(path, self._tr))
+            if not self._preview.frame_said:
+                note = self._tr("The file does not state its frame: is it this one?")
+                self._sentence.setText(f"{self._sentence.text()}\n{note}")
         self._sentence.style().unpolish(self._sentence)
         self._sentence.style().polish(self._sentence)
 

@@ -29,6 +29,7 @@ from posopt_gui.viewmodels.touched_points import (
     TouchedCorner,
     placement_from_points,
 )
+from posopt_gui.viewmodels.typed_numbers import refusal_words
 from posopt_gui.views.choice_edit import ChoiceEdit
 from posopt_gui.views.number_edit import NumberEdit
 from posopt_gui.views.setup_style import setup_style
@@ -195,6 +196,7 @@ class PlacementDialog(QDialog):
                 editor.set_unset(f"{axis} {UNSET}")
                 editor.show_number(None)
                 editor.entered.connect(self._compute)
+                editor.refused.connect(self._compute)
                 grid.addWidget(editor, 2 * number + 1, column)
                 row.append(editor)
             self._numbers.append(row)
@@ -213,6 +215,8 @@ class PlacementDialog(QDialog):
         values = [[editor.number for editor in row] for row in self._numbers]
         if self._workpiece is None or self._workpiece.section is None:
             self._say(self._tr("The beam of the cell cannot be used yet."), False)
+        elif refused := [one.refusal for row in self._numbers for one in row if one.refusal]:
+            self._say(refusal_words(refused[0], "", self._tr), True)
         elif any(one is None for row in values for one in row):
             self._say(self._tr("Enter all three points."), False)
         else:

@@ -32,6 +32,10 @@ class VerdictBanner(QFrame):
         self.headline = QLabel()
         self.headline.setObjectName("headline")
         self.headline.setWordWrap(True)
+        self.explanation = QLabel()
+        self.explanation.setWordWrap(True)
+        self.explanation.setProperty("tone", "muted")
+        self.explanation.hide()
         self.plan_button = QPushButton()
         self.plan_button.setObjectName("primary")
         self.plan_button.setAutoDefault(False)
@@ -49,6 +53,7 @@ class VerdictBanner(QFrame):
         page.setContentsMargins(12, 10, 12, 0)
         page.setSpacing(6)
         page.addLayout(row)
+        page.addWidget(self.explanation)
         page.addWidget(self.bar)
 
     def retranslate(self) -> None:
@@ -59,6 +64,8 @@ class VerdictBanner(QFrame):
     def show_view(self, view: ExportView) -> None:
         """Show where the export stands."""
         self.headline.setText(view.headline)
+        self.explanation.setText(view.explanation)
+        self.explanation.setVisible(bool(view.explanation))
         for part in (self, self.headline):
             part.setProperty("tone", view.tone if view.tone != "muted" else "")
             part.style().polish(part)

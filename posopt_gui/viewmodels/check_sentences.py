@@ -107,6 +107,8 @@ CHECK_SENTENCES: Final[tuple[str, ...]] = (
     "{file}: has version {version}, this posopt reads {known}",
     "{file}: there is no such file, expected a path file",
     "a program name has upper-case letters A-Z, digits and _, and begins with a letter, got {name}",
+    "a program name is no device of Windows (CON, PRN, AUX, NUL, COM1, LPT1 ...), where no "
+    "file can be called so, got {name}",
     "the program name {name} has {count} characters, the controller takes {longest}",
     "a remark cannot hold Chinese characters, since the controller reads printable ASCII alone",
     "write it in Latin letters (pinyin), got {character} at character {number} of {reason}",
@@ -159,6 +161,9 @@ UNITS: Final[tuple[str, ...]] = (
 )  # fmt: skip
 """Units of the checks that are words; mm, deg, m^3 and kg are the same in every language."""
 
+_PLACE_AFTER_CHINESE = re.compile(r"(?<=[\u4e00-\u9fff])(?=[A-Za-z0-9_.-]+\.\w+:\d)")
+"""Before 'GROOVE.LS:39' behind a Chinese character, where a blank belongs."""
+
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 
 
@@ -166,7 +171,8 @@ def sentence(text: str, tr: Translate) -> str:
     """A sentence of a check as `tr` says it; as it is where its pattern is not known."""
     if any(_expression(pattern).fullmatch(text) for pattern in LISTS):
         return plain_words(_part(text, tr))
-    return plain_words(tr("; ").join(_part(part, tr) for part in text.split("; ")))
+    said = tr("; ").join(_part(part, tr) for part in text.split("; "))
+    return plain_words(_PLACE_AFTER_CHINESE.sub(" ", said))
 
 
 def _part(text: str, tr: Translate) -> str:

@@ -22,6 +22,13 @@ def error_words(error: PosoptError, tr: Translate) -> str:
     return f"{place_words(place, tr)}{tr(': ')}{text}"
 
 
+def file_error_words(error: PosoptError, tr: Translate) -> str:
+    """An error's sentence, after the name of the file that it is about where it names one."""
+    if not isinstance(error, InputError) or error.place is None:
+        return error_words(error, tr)
+    return f"{place_words(error.place, tr)}{tr(': ')}{sentence(error.message, tr)}"
+
+
 def place_words(place: Place, tr: Translate) -> str:
     """Name of a file, with line and column where they are known."""
     name = Path(place.file).name

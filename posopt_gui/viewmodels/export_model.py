@@ -10,8 +10,10 @@ from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from posopt_gui.viewmodels.check_figures import check_figure, figures
+from posopt_gui.viewmodels.check_figures import check_figure, check_rank, figures
 from posopt_gui.viewmodels.check_sentences import sentence
+from posopt_gui.viewmodels.number_words import clearance_mm
+from solver.units import MM_PER_M
 
 if TYPE_CHECKING:
     from solver.analysis.check import Check
@@ -21,6 +23,9 @@ Translate = Callable[..., str]
 
 LEAST_REASON: Final = 10
 """Fewest characters of a reason for an override; the same as the program writer's."""
+
+ROUNDING: Final = 0.2
+"""Less than this [mm] the rounding of positions and figures changes a clearance."""
 
 OVERRIDDEN: Final = "_OVR"
 """Ends the name of a program that is written although a check failed; the writer's too."""
@@ -81,6 +86,7 @@ class ExportStage(Enum):
     EMPTY = auto()
     PLANNING = auto()
     STALE = auto()
+    ANSWERING = auto()
     BLOCKED = auto()
     CHECKING = auto()
     FAULT = auto()
@@ -96,13 +102,15 @@ class Situation:
     `current` says whether the draft belongs to the plan and the form as they are now; `fault` is
     why there is no draft, `order_fault` why the file cannot be written ('' where it can, None
     while that is not known), `reason_fault` why the reason cannot be stamped, and `write_fault`
-    why the last writing failed.
+    why the last writing failed. `answering` says that the shown sequence is not (yet) that of the
+    pins and regions, and `outdated` that the shown program is another one than the written one.
     """
 
     form: ExportForm = ExportForm()
     planned: bool = False
     planning: bool = False
     stale: bool = False
+    answering: bool = False
     blocked: str = ""
     current: bool = False
     draft: ProgramDraft | None = None
@@ -112,6 +120,7 @@ class Situation:
     writing: bool = False
     write_fault: str = ""
     written: WrittenProgram | None = None
+    outdated: bool = False
     least: float = math.inf
     required: float = 0.0
     tolerance: float = 0.0
@@ -124,6 +133,7 @@ class Situation:
             (self.planning, ExportStage.PLANNING),
             (not self.planned, ExportStage.EMPTY),
             (self.stale, ExportStage.STALE),
+            (self.answering, ExportStage.ANSWERING),
             (bool(self.blocked), ExportStage.BLOCKED),
             (bool(self.fault), ExportStage.FAULT),
             (not self.current or self.draft is None, ExportStage.CHECKING),
@@ -154,6 +164,7 @@ class ExportView:
     stage: ExportStage
     tone: str
     headline: str
+    explanation: str
     note: str
     note_tone: str
     rows: tuple[CheckRow, ...]
@@ -182,6 +193,7 @@ def export_view(now: Situation, tr: Translate) -> ExportView:
         stage=stage,
         tone=tone,
         headline=headline,
+        explanation=_explanation(now, tr) if settled else "",
         note=note,
         note_tone=note_tone,
         rows=check_rows(draft.report.checks, tr) if draft is not None else (),
@@ -202,6 +214,10 @@ _HEADLINES: Final[Mapping[ExportStage, tuple[str, str]]] = {
     ExportStage.EMPTY: ("muted", "There is no plan to export yet."),
     ExportStage.PLANNING: ("muted", "A plan is being made."),
     ExportStage.STALE: ("warning", "The inputs changed since this plan: plan again to export."),
+    ExportStage.ANSWERING: (
+        "muted",
+        "The sequence for the pins and forbidden regions is being worked out.",
+    ),
     ExportStage.BLOCKED: ("error", "No sequence keeps to the pins and forbidden regions: {reason}"),
     ExportStage.FAULT: ("error", "{reason}"),
     ExportStage.CHECKING: ("muted", "The program is being checked."),
@@ -222,15 +238,35 @@ def _verdict(now: Situation, tr: Translate) -> tuple[str, str]:
     checks = now.draft.report.checks if now.draft is not None else ()
     failed = sum(not check.passed for check in checks)
     if failed:
-        words = "{failed} of {count} checks failed: no program is written."
+        first = next(row for row in check_rows(checks, tr) if not row.passed)
+        words = "{failed} of {count} checks failed, first '{name}': no program is written."
         if failed == 1:
-            words = "1 of {count} checks failed: no program is written."
-        return "error", tr(words, failed=failed, count=len(checks))
-    clearance = next((check for check in checks if check.name == "clearance"), None)
-    if clearance is None or not math.isfinite(clearance.value):
+            words = "1 of {count} checks failed, '{name}': no program is written."
+        return "error", tr(words, failed=failed, count=len(checks), name=first.name)
+    clearance = _clearance_found(now)
+    if not math.isfinite(clearance):
         return "good", tr("All {count} checks passed on the nominal model.", count=len(checks))
     words = "All {count} checks passed: clearance at least {clearance} mm on the nominal model."
-    return "good", tr(words, count=len(checks), clearance=f"{clearance.value:.1f}")
+    return "good", tr(words, count=len(checks), clearance=f"{clearance:.1f}")
+
+
+def _clearance_found(now: Situation) -> float:
+    """Clearance that the checks found [mm]; nan where there is none."""
+    checks = now.draft.report.checks if now.draft is not None else ()
+    return next((check.value for check in checks if check.name == "clearance"), math.nan)
+
+
+def _explanation(now: Situation, tr: Translate) -> str:
+    """Why the program's clearance is another number than the plan's, where it is."""
+    found, planned = _clearance_found(now), now.least * MM_PER_M
+    # Rounded positions move by hundredths of a millimetre: more than a figure is something else.
+    if not abs(planned - found) < ROUNDING or f"{found:.1f}" == clearance_mm(now.least):
+        return ""
+    words = (
+        "The plan's clearance is {clearance} mm. The program's positions are rounded to the "
+        "file's decimals; its clearance is stated from these."
+    )
+    return tr(words, clearance=clearance_mm(now.least))
 
 
 def _note(now: Situation, tr: Translate) -> tuple[str, str]:
@@ -249,7 +285,10 @@ def _note(now: Situation, tr: Translate) -> tuple[str, str]:
     if written.stale:
         words = "Nothing calls these older parts any more: {names}"
         parts.append(tr(words, names=", ".join(path.name for path in written.stale)))
-    return ("warning" if written.override is not None else "good"), " ".join(parts)
+    if now.outdated:
+        parts.append(tr("What is shown now is another program."))
+    careful = written.override is not None or now.outdated
+    return ("warning" if careful else "good"), " ".join(parts)
 
 
 def _reason_hint(form: ExportForm, tr: Translate) -> str:
@@ -268,27 +307,35 @@ def override_target(path: str) -> Path:
 
 
 def check_rows(checks: Sequence[Check], tr: Translate) -> tuple[CheckRow, ...]:
-    """All checks as lines, what failed first."""
-    return tuple(_row(check, tr) for check in sorted(checks, key=lambda one: one.passed))
+    """All checks as lines: what failed first, then what matters most."""
+    order = sorted(checks, key=lambda one: (one.passed, check_rank(one.name)))
+    return tuple(_row(check, tr) for check in order)
 
 
 def _row(check: Check, tr: Translate) -> CheckRow:
     file, line = line_of(check)
     shown, bound = figures(check.value, check.limit)
-    limit = check_figure(bound, check.unit, tr)
-    if check.assumed:
-        limit += f" ({tr('assumed')})"
     return CheckRow(
         passed=check.passed,
         word=tr("passed") if check.passed else tr("FAILED"),
         name=tr(check.name),
         value=check_figure(shown, check.unit, tr),
-        limit=limit,
-        detail=sentence(check.detail, tr),
+        limit=check_figure(bound, check.unit, tr),
+        detail=_detail(check, tr),
         waypoint=waypoint_of(check),
         file=file,
         line=line,
     )
+
+
+def _detail(check: Check, tr: Translate) -> str:
+    """The sentence of a check, and that it rests on an assumption where nothing else says so."""
+    detail = sentence(check.detail, tr)
+    said = (check.name + check.detail).lower()
+    if not check.assumed or any(word in said for word in ("estimated", "assumed", "declared")):
+        return detail
+    words = tr("rests on an assumption")
+    return f"{detail} ({words})" if detail else words
 
 
 def waypoint_of(check: Check) -> int | None:

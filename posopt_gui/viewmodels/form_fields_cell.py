@@ -204,8 +204,8 @@ def placement_section(cell: Cell, facts: Facts) -> Section:
         )  # fmt: skip
     if table == "beam" and rule_of(cell) == LOWER_EDGE:
         fields += [
-            point_field("beam.position_xy_mm", "Plan point", "Centre of the beam seen from above.",
-                   AXES[:2]),
+            point_field("beam.position_xy_mm", "Point in plan view (X, Y)",
+                        "Centre of the beam seen from above.", AXES[:2]),
             Field("beam.lower_edge_mm", "Lower edge", Kind.NUMBER, "Height of the lowest edge of "
                   "the beam.", "mm", step=5.0, required=True),
         ]  # fmt: skip

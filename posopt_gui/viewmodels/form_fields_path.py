@@ -82,8 +82,11 @@ def _summary(cell: Cell, kind: str) -> str:
 def source_fields(cell: Cell, facts: Facts) -> list[Field]:
     """What a path file may leave unsaid."""
     groups = facts.workpiece.groups if facts.workpiece is not None else ()
+    # Parts of a beam have names in every language; a mesh has the name that it was given.
+    parts = tuple(Choice(one, one.replace("_", " ")) for one in groups)
     if "workpiece" in cell:
         groups = (str(at(cell, "workpiece.group") or at(cell, "workpiece.name", "")),)
+        parts = plain(groups)
     return [
         Field("path.frame", "Frame", Kind.CHOICE, "Frame of the file's positions. A file that "
               "states another is refused.",
@@ -92,7 +95,7 @@ def source_fields(cell: Cell, facts: Facts) -> list[Field]:
               "says it.", choices=(Choice(None, AS_THE_FILE), *plain(tuple(LENGTH_UNITS)))),
         Field("path.touches", "Touches", Kind.CHOICE, "Which part of the workpiece the tool may "
               "enter, for passes of a file that state nothing.",
-              choices=(Choice(None, AS_THE_FILE), *plain(groups))),
+              choices=(Choice(None, AS_THE_FILE), *parts)),
         Field("path.resample_mm", "Resample", Kind.NUMBER, "Largest distance between the waypoints "
               "of the file; more are put between.", "mm", 0.0, above=True, step=5.0,
               unset="the file's points"),
@@ -132,7 +135,8 @@ def common_fields() -> list[Field]:
     """What passes of any kind may leave unsaid."""
     default = ImportOptions()
     return [
-        Field("path.feed_mm_s", "Feed", Kind.NUMBER, "Feed of passes that state none.", "mm/s",
+        Field("path.feed_mm_s", "Feed unless stated", Kind.NUMBER,
+              "Feed of passes that state none; a feed in the path file comes first.", "mm/s",
               0.0, in_mm(MAX_FEED), above=True, step=5.0, default=in_mm(default.feed)),
         Field("path.convention", "Tool y axis", Kind.CHOICE, "How a normal and a travel direction "
               "become an orientation: z points into the surface, and the travel is along y or "

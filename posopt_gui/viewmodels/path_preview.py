@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain, islice
 from pathlib import Path
 from types import MappingProxyType
@@ -84,6 +84,8 @@ class PathPreview:
         The path, where it can be read.
     error : InputError or None
         Why it cannot.
+    frame_said : bool
+        Whether the file, or a person for it, says its frame; else that of another file is shown.
     """
 
     source: Source
@@ -94,6 +96,7 @@ class PathPreview:
     mapping: Mapping[str, int] = field(default_factory=dict)
     toolpath: Toolpath | None = None
     error: InputError | None = None
+    frame_said: bool = True
 
     @property
     def name(self) -> str:
@@ -108,7 +111,7 @@ class PathPreview:
     @property
     def askable(self) -> bool:
         """Whether a person is asked: for guessed columns, or for what the file leaves open."""
-        if self.mappable and not self.understood:
+        if (self.mappable and not self.understood) or not self.frame_said:
             return True
         if self.error is None:
             return False
@@ -158,7 +161,34 @@ def examine(
         toolpath = _read(taken, cell, {**table, "file": taken.file}, folder, files)
     except InputError as error:
         return _with(found, error=error)
+    if path is None and not _says_its_frame(taken, cell, table, folder, files):
+        return replace(_with(found, toolpath=toolpath), frame_said=False)
     return _with(found, toolpath=toolpath)
+
+
+def without_frame(cell: Cell, file: str) -> dict[str, Any]:
+    """`path_table` without the frame that was said of another file: none is ever guessed."""
+    table = path_table(cell, file)
+    if table_of(cell, "path").get("file") != table["file"]:
+        table.pop("frame", None)
+    return table
+
+
+def _says_its_frame(
+    source: Source,
+    cell: Cell,
+    table: Mapping[str, Any],
+    folder: str,
+    files: Mapping[str, bytes] | None,
+) -> bool:
+    own = without_frame(cell, source.file)
+    if own == table:
+        return True
+    try:
+        _read(source, cell, own, folder, files)
+    except InputError:
+        return False
+    return True
 
 
 def path_table(cell: Cell, file: str) -> dict[str, Any]:

@@ -83,7 +83,7 @@ def totals(
         Total(translate("Branch"), _branches(problem, sequence.branch, sequence.pendant)),
     ]
     if answer is not None and answer.sequence is not None:
-        rows.insert(1, Total(translate("Price of your wishes"), _price(result, answer)))
+        rows.insert(1, Total(translate("Price of your pins and regions"), _price(result, answer)))
     if report is not None and report.cycle is not None:
         total = f"{decimal(report.cycle.total, 1)} s"
         rows.append(Total(translate("Cycle with links, estimated"), total))

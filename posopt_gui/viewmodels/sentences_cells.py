@@ -70,6 +70,7 @@ CELL_SENTENCES: Final[tuple[str, ...]] = (
     "expected a date as 'YY-MM-DD', found {found}",
     "up to 36 of A-Z, 0-9 and _, a letter first",
     "a program name of A-Z, 0-9 and _, a letter first",
+    "a name that is no device of Windows",
     "a time as 'HH:MM:SS'",
     "the name 'floor' is kept for the floor of the cell",
     "expected the lower angle before the higher one",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QWheelEvent
+from PySide6.QtCore import QEvent, QObject, Qt, QTimer, Signal
+from PySide6.QtGui import QFocusEvent, QWheelEvent
 from PySide6.QtWidgets import QComboBox, QCompleter, QLineEdit, QWidget
 
 from posopt_gui.views.quiet_editors import QuietCombo
@@ -31,6 +31,7 @@ class ChoiceEdit(QuietCombo):
         self._searchable = searchable
         self._values: list[Any] = []
         self._value: Any = None
+        self._clicked_into = False
         if searchable:
             self.setEditable(True)
             self.setInsertPolicy(QComboBox.InsertPolicy.NoInsert)
@@ -40,6 +41,7 @@ class ChoiceEdit(QuietCombo):
             completer.setCompletionMode(QCompleter.CompletionMode.PopupCompletion)
             self.setCompleter(completer)
             self._line().editingFinished.connect(self._take_text)
+            self._line().installEventFilter(self)
         self.activated.connect(self._take_index)
         leaving = EscapeLeaves(self, lambda: self.show_value(self._value))
         leaving.focused.connect(self.focused)
@@ -84,6 +86,34 @@ class ChoiceEdit(QuietCombo):
             event.ignore()
         else:
             super().wheelEvent(event)
+
+    def focusInEvent(self, event: QFocusEvent) -> None:  # noqa: N802 - Qt's name
+        """Note that a click has brought the keyboard."""
+        self._clicked_into = event.reason() == Qt.FocusReason.MouseFocusReason
+        super().focusInEvent(event)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
+        """Let the first click into the text select it all and open the list.
+
+        What is typed then takes the place of the text, and the list shows what it finds.
+        """
+        if event.type() == QEvent.Type.MouseButtonRelease and self._clicked_into:
+            self._clicked_into = False
+            QTimer.singleShot(0, self, self._offer_all)
+        return super().eventFilter(watched, event)
+
+    def _offer_all(self) -> None:
+        completer = self.completer()
+        if completer is None:
+            return
+        completer.setCompletionPrefix("")
+        completer.complete()
+        self._line().selectAll()
+
+    def commit(self) -> None:
+        """Apply a text that was typed, as Enter does."""
+        if self._searchable:
+            self._take_text()
 
     def _line(self) -> QLineEdit:
         line = self.lineEdit()

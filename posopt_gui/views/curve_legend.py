@@ -139,8 +139,9 @@ class CurveLegend(QWidget):
         """Name the lines beside their samples where there is room [px], else below them."""
         styles = Qt.ToolButtonStyle
         beside, under = styles.ToolButtonTextBesideIcon, styles.ToolButtonTextUnderIcon
-        for plan, style in (
-            (True, beside), (False, beside), (False, under), (False, styles.ToolButtonIconOnly),
+        for plan, style, joints in (
+            (True, beside, ALL_JOINTS), (False, beside, ALL_JOINTS), (False, under, ALL_JOINTS),
+            (False, under, "J"), (False, styles.ToolButtonIconOnly, "J"),
         ):  # fmt: skip
             self._plan.setVisible(plan)
             self._plan_sample.setVisible(plan)
@@ -149,7 +150,7 @@ class CurveLegend(QWidget):
                 words = button.fontMetrics().horizontalAdvance(button.text())
                 # Qt keeps more room around a name than it needs.
                 button.setMaximumWidth(words + BESIDE if style is under else UNBOUND)
-            self._menu_button.setText(ALL_JOINTS if style is beside else "J")
+            self._menu_button.setText(joints)
             size = LOW_SAMPLE if style is under else SAMPLE
             if size != self._sample:
                 self._sample = size

@@ -132,6 +132,8 @@ class WaypointPlot(pg.PlotWidget):
         self._level_words.setParentItem(plot.getViewBox())
         self._level_words.setZValue(60)
         plot.getViewBox().sigResized.connect(self._put_level_words)
+        self._highest: float | None = None
+        plot.getViewBox().sigResized.connect(self._keep_headroom)
         plot.addItem(self._cursor, ignoreBounds=True)
         self._cursor.sigDragged.connect(lambda line: self.place_wanted.emit(line.value()))
         # Let go between two waypoints it goes to the nearer one, which all numbers are about.
@@ -198,7 +200,14 @@ class WaypointPlot(pg.PlotWidget):
     def fit_from_zero(self, curves: Iterable[FloatArray], level: float | None) -> None:
         """Choose the axis from zero to beyond all curves and a level."""
         highs = [float(np.max(one[np.isfinite(one)], initial=0.0)) for one in curves]
-        self.setYRange(0.0, 1.15 * max([level or 0.0, *highs, 1e-6]), padding=0.0)
+        self._highest = max([level or 0.0, *highs, 1e-6])
+        self._keep_headroom()
+
+    def _keep_headroom(self, *_: object) -> None:
+        """Leave the words in the upper corners a strip that no curve runs through."""
+        if self._highest is not None:
+            share = 1.0 - self.headroom
+            self.setYRange(0.0, self._highest * max(1.15, 1.03 / share), padding=0.0)
 
     def set_ticks(self, values: Iterable[float]) -> None:
         """Name these values at the left axis, and no others."""

@@ -189,7 +189,7 @@ class CurvesView(QWidget):
         self.manipulability_plot.setLabel("left", tr("manipulability, m³"))
         self.step_plot.setLabel("left", tr("step, °"))
         for plot in (self.clearance_plot, self.manipulability_plot, self.step_plot):
-            plot.setLabel("bottom", tr("waypoint"))
+            plot.setLabel("bottom", tr("Waypoint"))
         self.legend.retranslate()
         self._fit_legend()
         self.feed.retranslate()

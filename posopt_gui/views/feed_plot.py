@@ -47,7 +47,7 @@ class FeedPanel(QStackedWidget):
     def retranslate(self) -> None:
         """Set all texts again."""
         self.plot.setLabel("left", self._tr("TCP speed, mm/s"))
-        self.plot.setLabel("bottom", self._tr("waypoint"))
+        self.plot.setLabel("bottom", self._tr("Waypoint"))
         self.button.setText(self._tr("Check the program"))
         self.update_report()
 

@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
 
 from posopt_gui.viewmodels.form_types import Field, Kind, Note, range_of
 from posopt_gui.viewmodels.number_words import in_figures, with_unit
+from posopt_gui.viewmodels.typed_numbers import Refusal, refusal_words
 from posopt_gui.views.choice_edit import ChoiceEdit
 from posopt_gui.views.flag_edit import FlagEdit
 from posopt_gui.views.number_edit import NumberEdit
@@ -37,19 +38,21 @@ def note_text(translate: Translate, note: Note) -> str:
 class FieldRow(QWidget):
     """Label, editor and sentence of one field.
 
-    Signals: `edited(value)` when a person has changed the value, `focused()`, `file_wanted()`.
+    Signals: `edited(value)` when a person has changed the value, `focused()`, `file_wanted()`,
+    `refused_changed()` when a typed text is not taken, or gone again.
     """
 
     edited = Signal(object)
     file_wanted = Signal()
     focused = Signal()
+    refused_changed = Signal()
 
     def __init__(self, field: Field, translate: Translate, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.field = field
         self._tr = translate
         self._value: Any = None
-        self._error = ""
+        self._error = self._said = ""
         self._label = QLabel(self)
         self._label.setWordWrap(True)
         self._label.setFixedWidth(LABEL_WIDTH)
@@ -83,7 +86,19 @@ class FieldRow(QWidget):
     @property
     def error(self) -> str:
         """The sentence that is shown."""
-        return self._error
+        return self._said
+
+    @property
+    def refusal(self) -> Refusal | None:
+        """What was typed and is not taken; None where all is."""
+        found = (one.refusal for one in self.editors if isinstance(one, NumberEdit))
+        return next((one for one in found if one is not None), None)
+
+    def forget_typed(self) -> None:
+        """Show the value again in place of what was not taken."""
+        for editor in self.editors:
+            if isinstance(editor, NumberEdit) and editor.refusal is not None:
+                editor.restore()
 
     def set_field(self, field: Field) -> None:
         """Take a field of the same structure: other range, default, choices."""
@@ -115,6 +130,7 @@ class FieldRow(QWidget):
             self._browse.setAccessibleName(f"{text}: {self._tr('Choose a file')}")
         self._set_forms()
         self._show()
+        self._show_sentence()
 
     def range_text(self) -> str:
         """The range in words."""
@@ -153,9 +169,27 @@ class FieldRow(QWidget):
 
     def set_error(self, sentence: str) -> None:
         """Mark the value as wrong with a sentence; '' takes the mark away."""
-        if sentence == self._error:
-            return
         self._error = sentence
+        self._show_sentence()
+
+    def _on_refused(self) -> None:
+        self._show_sentence()
+        self.refused_changed.emit()
+
+    def refusal_text(self) -> str:
+        """Why a typed text is not taken; '' where all is."""
+        refusal = self.refusal
+        if refusal is None:
+            return ""
+        open_above = self.field.low is not None and self.field.high is None
+        bounds = "" if open_above else self.range_text()
+        return refusal_words(refusal, bounds, self._tr, with_unit("", self.field.unit))
+
+    def _show_sentence(self) -> None:
+        sentence = self.refusal_text() or self._error
+        if sentence == self._said:
+            return
+        self._said = sentence
         self._sentence.setText(sentence)
         self._sentence.setVisible(bool(sentence))
         for editor in self.editors:
@@ -192,6 +226,7 @@ class FieldRow(QWidget):
     def _build_number(self) -> None:
         editor = NumberEdit(self)
         editor.entered.connect(self._take)
+        editor.refused.connect(self._on_refused)
         editor.focused.connect(self.focused)
         self._beside(editor)
 
@@ -208,6 +243,7 @@ class FieldRow(QWidget):
             editor = NumberEdit(self)
             editor.setProperty("slim", True)
             editor.entered.connect(lambda value, at=number: self._take_part(at, value))
+            editor.refused.connect(self._on_refused)
             editor.focused.connect(self.focused)
             row, column = divmod(number, columns)
             column += 1 if beside else 0

@@ -6,6 +6,7 @@ import time
 from typing import Any
 
 from OpenGL import GL
+from OpenGL.error import Error as GlError
 from pyqtgraph.opengl.GLViewWidget import GLViewMixin
 from PySide6.QtCore import QSize, Qt, QTimer, Signal
 from PySide6.QtGui import (
@@ -132,7 +133,7 @@ class GlPicture(GLViewMixin, QWidget):
             # The scene's opacity is of no meaning: what is behind it is the window.
             self._picture.reinterpretAsFormat(QImage.Format.Format_RGB32)
             self._picture.setDevicePixelRatio(ratio)
-        except RuntimeError as error:
+        except (RuntimeError, GlError) as error:
             self._broken = True
             self._picture = QImage()
             self.failed.emit(str(error))

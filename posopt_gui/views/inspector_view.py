@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence as Rows
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QFrame,
+    QGraphicsOpacityEffect,
+    QGridLayout,
+    QLabel,
+    QScrollArea,
+    QVBoxLayout,
+    QWidget,
+)
 
 from posopt_gui.controllers.pose_facts import PoseExplainer
 from posopt_gui.controllers.session import Session
@@ -34,6 +42,9 @@ from solver.candidates.outcomes import Outcome
 LEAST_WIDTH = 290
 """Width in which names and numbers of the filters stand beside each other [px]."""
 
+PALE = 0.45
+"""Opacity of what belongs to older inputs."""
+
 STATES = {"good": "✓", "near": "!", "bad": "✕", "": ""}
 
 
@@ -48,7 +59,8 @@ class InspectorView(QScrollArea):
         self._tr = session.look.tr
         self._explainer = PoseExplainer(self)
         self.title, self.verdict, self.subtitle = QLabel(), QLabel(), QLabel()
-        self.trouble = QLabel()
+        self.trouble, self.stale = QLabel(), QLabel()
+        self.body = QWidget()
         self.facts = LabelGrid(2)
         self.bars = JointBars()
         self.clearance, self.bodies, self.beyond = QLabel(), QLabel(), QLabel()
@@ -68,8 +80,11 @@ class InspectorView(QScrollArea):
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.setMinimumWidth(LEAST_WIDTH)
         page = QWidget()
-        self._column = QVBoxLayout(page)
-        self._column.setContentsMargins(12, 10, 12, 10)
+        whole = QVBoxLayout(page)
+        whole.setContentsMargins(12, 10, 12, 10)
+        whole.setSpacing(4)
+        self._column = QVBoxLayout(self.body)
+        self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(4)
         head = QGridLayout()
         head.addWidget(self.title, 0, 0)
@@ -82,11 +97,19 @@ class InspectorView(QScrollArea):
         self.title.setFont(font)
         font.setPointSizeF(1.2 * self.font().pointSizeF())
         self.clearance.setFont(font)
-        for label in (self.trouble, self.verdict, self.subtitle, self.bodies, self.beyond):
+        for label in (
+            self.trouble, self.stale, self.verdict, self.subtitle, self.bodies, self.beyond,
+        ):  # fmt: skip
             label.setWordWrap(label is not self.verdict)
         self.trouble.setTextFormat(Qt.TextFormat.RichText)
         self.trouble.linkActivated.connect(self._on_link)
-        self._column.addWidget(self.trouble)
+        for part in (self.trouble, self.stale, self.body):
+            whole.addWidget(part)
+        # What belongs to older inputs is pale, as are map and curves.
+        self._pale = QGraphicsOpacityEffect(self.body)
+        self._pale.setOpacity(PALE)
+        self._pale.setEnabled(False)
+        self.body.setGraphicsEffect(self._pale)
         self._column.addLayout(head)
         self._column.addWidget(self.facts)
         for key, widgets in (
@@ -150,6 +173,7 @@ class InspectorView(QScrollArea):
 
     def _show_all(self, *_: object) -> None:
         self._show_trouble()
+        self._show_stale()
         self._show_pose()
         self._show_totals()
         self._show_gate()
@@ -172,6 +196,18 @@ class InspectorView(QScrollArea):
                 f"border-radius: 4px; padding: 8px; color: {theme.text};"
             )
 
+    def _show_stale(self) -> None:
+        """Say above everything that it belongs to older inputs, and make it pale."""
+        session, theme = self._session, self._session.look.theme
+        stale = session.stale and session.result is not None
+        self._pale.setEnabled(stale)
+        self.stale.setVisible(stale)
+        self.stale.setText(self._tr("Inputs changed. Plan to update."))
+        self.stale.setStyleSheet(
+            f"background: {theme.surface}; border: 1px solid {theme.warning};"
+            f"border-radius: 4px; padding: 8px; color: {theme.warning}; font-weight: 600;"
+        )
+
     def _trouble_html(self, trouble: Trouble) -> str:
         theme = self._session.look.theme
         parts = [f'<b style="color:{theme.error}">{trouble.headline}</b>']
@@ -193,7 +229,7 @@ class InspectorView(QScrollArea):
         result, hover = session.result, session.hover or session.kept
         if result is None:
             return None
-        if hover is not None and hover.waypoint < len(result.problem.toolpath):
+        if hover is not None and hover.stands_in(result.candidates):
             pose = candidate_pose(
                 result, hover.waypoint, hover.orientation, hover.branch, hover.turn
             )
@@ -300,9 +336,6 @@ class InspectorView(QScrollArea):
                 number = self._tr("waypoint {number}", number=one.waypoint + 1)
                 value += f' <a href="{one.waypoint}" style="color:{theme.accent}">{number}</a>'
             rows.append((Text(one.label, theme.muted), Text(value, self._colour(one.state))))
-        if session.stale:
-            words = self._tr("Inputs changed. Plan to update.")
-            rows.append((Text("!", theme.warning), Text(words, theme.warning)))
         self.totals.set_rows(rows)
 
     def _show_gate(self) -> None:

@@ -45,7 +45,7 @@ from solver.model.wishes import Pin, Region
 from solver.transforms import FloatArray
 from solver.units import DEG_PER_RAD
 
-BOTTOM_AXIS = 36
+BOTTOM_AXIS = 42
 """Height of the numbers and the words below the cells [px]."""
 
 DIMMED = 0.35

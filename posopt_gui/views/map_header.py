@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QAction, QStandardItemModel
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QSizePolicy, QToolButton, QWidget
@@ -15,14 +16,18 @@ from posopt_gui.viewmodels.map_model import BEST_OF_ALL, Choice, MapModel, Page
 from posopt_gui.viewmodels.map_readings import degrees
 from posopt_gui.views.quiet_editors import QuietCombo
 from solver.model.settings import Scheme
+from solver.transforms import FloatArray
 
 COMPARABLE = (Scheme.EXACT.value, Scheme.F.value, Scheme.F1.value, Scheme.F2.value, CONSTANT)
 
 LAYER_WIDTH, PAGE_WIDTH = 230, 290
 """Widths of the choices where there is room [px]."""
 
-LEAST_LENGTH = 10
-"""Characters that are seen of a choice where there is none."""
+LEAST_LENGTH, PAGE_LENGTH = 8, 15
+"""Widest characters that are seen of a choice where there is none: of a page, its whole name."""
+
+SAME_ANGLE = 1e-6
+"""Angles of two sweeps that differ by less are the same [deg]."""
 
 
 class MapHeader(QWidget):
@@ -55,7 +60,7 @@ class MapHeader(QWidget):
             box.setSizeAdjustPolicy(
                 QuietCombo.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon
             )
-            box.setMinimumContentsLength(LEAST_LENGTH)
+            box.setMinimumContentsLength(PAGE_LENGTH if box is self.page_box else LEAST_LENGTH)
             box.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
             box.setMaximumWidth(width)
             box.view().setMinimumWidth(width)
@@ -149,9 +154,11 @@ class MapHeader(QWidget):
 
     def set_model(self, model: MapModel | None) -> None:
         """Offer the pages of other candidates; what was chosen stays where it can."""
-        chosen = self.choice
+        chosen, page, before = self.choice, self.page, self._model
         self._model = model
         self._pages = model.pages if model is not None else ()
+        if before is not None and model is not None:
+            chosen = carried(chosen, page, before, model)
         self._fill_boxes(chosen)
 
     def set_plan_page(self, slot: int, turn: int) -> None:
@@ -243,3 +250,22 @@ class MapHeader(QWidget):
         wheel = tr("The wheel zooms the waypoints, with Shift the leans, with Ctrl both.")
         self.fit_button.setToolTip(tr("Show all waypoints and leans") + "\n" + wheel)
         self._fill_boxes(self.choice)
+
+
+def carried(chosen: Choice, page: Page | None, before: MapModel, model: MapModel) -> Choice:
+    """What was chosen among other candidates: the same branch and angles, wherever they stand."""
+    same = [
+        one for one in model.pages
+        if page is not None and (one.branch, one.turn) == (page.branch, page.turn)
+    ]  # fmt: skip
+    slot, turn = (same[0].slot, same[0].turn) if same else (None, None)
+    lead = _place_of_same(before.leads, chosen.lead, model.leads)
+    return Choice(slot, turn, lead, _place_of_same(before.spins, chosen.spin, model.spins))
+
+
+def _place_of_same(before: FloatArray, place: int | None, now: FloatArray) -> int | None:
+    """Where an angle of one sweep stands in another, None where it does not."""
+    if place is None or place >= len(before):
+        return None
+    found = np.flatnonzero(np.isclose(now, before[place], rtol=0.0, atol=SAME_ANGLE))
+    return int(found[0]) if len(found) else None

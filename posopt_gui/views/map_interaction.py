@@ -120,8 +120,8 @@ class MapPlot(pg.PlotWidget):
     def leave(self) -> bool:
         """Give up what is being dragged; False where nothing is."""
         was = self._drag in {Drag.LINE, Drag.AREA}
-        self._drag = Drag.NONE
-        self._start = None
+        if was:
+            self._drag, self._start = Drag.NONE, None
         return was
 
     def cell_at(self, place: QPoint) -> Cell | None:

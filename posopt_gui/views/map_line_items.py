@@ -10,7 +10,7 @@ import numpy as np
 import pyqtgraph as pg
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen, QPolygonF
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen, QPolygonF, QTransform
 
 from posopt_gui.viewmodels.label_places import label_places
 from posopt_gui.views.map_items import qcolour
@@ -151,10 +151,12 @@ class LineNamesItem(_InView):
         self._names: tuple[LineName, ...] = ()
         self._ground = QColor()
         self._text = QColor()
+        self._placed: tuple[object, list[tuple[float, float]]] = (None, [])
 
     def set_names(self, names: Sequence[LineName], ground: QColor, text: QColor) -> None:
         """Show other names."""
         self._names, self._ground, self._text = tuple(names), ground, text
+        self._placed = (None, [])
         self.update()
 
     def paint(self, painter: QPainter, *_: Any) -> None:
@@ -172,16 +174,26 @@ class LineNamesItem(_InView):
         painter.setFont(font)
         metrics = QFontMetricsF(font)
         widths = [metrics.horizontalAdvance(one.text) + self.SAMPLE + 14.0 for one in self._names]
-        scale, shift = (transform.m11(), transform.m22()), (transform.dx(), transform.dy())
-        curves = [
-            (scale[0] * one.waypoint + shift[0], scale[1] * one.lean + shift[1])
-            for one in self._names
-        ]
-        room = (frame.left(), frame.top(), frame.right(), frame.bottom())
-        boxes = label_places(curves, widths, self.HEIGHT, room)
-        for name, width, place in zip(self._names, widths, boxes, strict=True):
+        for name, width, place in zip(
+            self._names, widths, self._places(transform, frame, widths), strict=True
+        ):
             self._draw_name(painter, name, QRectF(*place, width, self.HEIGHT))
         painter.setTransform(transform)
+
+    def _places(
+        self, transform: QTransform, frame: QRectF, widths: list[float]
+    ) -> list[tuple[float, float]]:
+        """Where the names stand; most paintings are of the same lines in the same view."""
+        scale, shift = (transform.m11(), transform.m22()), (transform.dx(), transform.dy())
+        room = (frame.left(), frame.top(), frame.right(), frame.bottom())
+        key = (scale, shift, room, *widths)
+        if key != self._placed[0]:
+            curves = [
+                (scale[0] * one.waypoint + shift[0], scale[1] * one.lean + shift[1])
+                for one in self._names
+            ]
+            self._placed = key, label_places(curves, widths, self.HEIGHT, room)
+        return self._placed[1]
 
     def _draw_name(self, painter: QPainter, name: LineName, box: QRectF) -> None:
         painter.setPen(Qt.PenStyle.NoPen)

@@ -55,10 +55,7 @@ class Pointing(QObject):
     @property
     def reading(self) -> Reading | None:
         """What stands under the mouse."""
-        shown = self._shown
-        if self.cell is None or shown.cells is None or shown.model is None:
-            return None
-        return shown.model.reading(shown.cells, self.cell.waypoint, self.cell.row)
+        return self._shown.reading(self.cell)
 
     @property
     def explains(self) -> bool:
@@ -152,17 +149,15 @@ class Pointing(QObject):
         return values
 
     def _show_hover(self, hover: Hover | None) -> None:
-        model = self._shown.model
-        if hover is None or model is None or hover.waypoint >= model.waypoints:
-            self._canvas.show_outline(None, self._shown.colours)
-            return
-        row = model.row_of_orientation(hover.orientation)
-        self._canvas.show_outline(Cell(hover.waypoint, row), self._shown.colours)
+        self._canvas.show_outline(self._cell_of(hover), self._shown.colours)
 
     def show_kept(self, *_: object) -> None:
         """Mark the candidate that was chosen to be looked at."""
-        model, kept = self._shown.model, self._session.kept
-        cell = None
-        if kept is not None and model is not None and kept.waypoint < model.waypoints:
-            cell = Cell(kept.waypoint, model.row_of_orientation(kept.orientation))
-        self._canvas.show_kept(cell, self._shown.colours)
+        self._canvas.show_kept(self._cell_of(self._session.kept), self._shown.colours)
+
+    def _cell_of(self, candidate: Hover | None) -> Cell | None:
+        """Where a candidate stands on the map, None where it does not."""
+        model = self._shown.model
+        if candidate is None or model is None or not candidate.stands_in(model.candidates):
+            return None
+        return Cell(candidate.waypoint, model.row_of_orientation(candidate.orientation))

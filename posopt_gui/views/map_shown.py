@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from posopt_gui.viewmodels.map_colours import Layer, Scale
-from posopt_gui.viewmodels.map_model import BEST_OF_ALL, Cells, Choice, MapModel, extra_cost_percent
+from posopt_gui.viewmodels.map_model import (
+    BEST_OF_ALL,
+    Cells,
+    Choice,
+    MapModel,
+    Reading,
+    extra_cost_percent,
+)
+from posopt_gui.views.map_interaction import Cell
 from posopt_gui.views.map_palette import MapPalette
 from solver.model.settings import Scheme
 from solver.transforms import FloatArray
@@ -30,6 +38,19 @@ class Shown:
     cells: Cells | None = None
     scale: Scale | None = None
     extra_cost: FloatArray | None = None
+
+    def holds(self, cell: Cell | None) -> bool:
+        """Whether the shown grid has a cell; one of an older grid may lie beyond it."""
+        model = self.model
+        if cell is None or model is None:
+            return False
+        return 0 <= cell.waypoint < model.waypoints and 0 <= cell.row < model.rows
+
+    def reading(self, cell: Cell | None) -> Reading | None:
+        """What stands in a cell on the shown page, None where there is no such cell."""
+        if cell is None or self.model is None or self.cells is None or not self.holds(cell):
+            return None
+        return self.model.reading(self.cells, cell.waypoint, cell.row)
 
     @property
     def plan_cost(self) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QAction, QImage, QKeyEvent, QKeySequence, QPainter
@@ -83,6 +84,7 @@ class MapView(QWidget):
         session.state_changed.connect(self.overlays.show_wishes)
         session.problem_changed.connect(self._on_problem)
         session.stale_changed.connect(self.overlays.show_state)
+        session.stale_changed.connect(self._on_stale)
         session.place_changed.connect(self._on_place)
         session.cursor_changed.connect(self.overlays.show_edges)
         session.hover_changed.connect(self.overlays.show_edges)
@@ -230,12 +232,16 @@ class MapView(QWidget):
             self._show_cells()
         self.overlays.show_all()
         self.wishes.show_price()
+        self._on_place(session.place)
 
     def show_candidates(self, candidates: CandidateSet | None) -> None:
         """Show other candidates; many are prepared off the window's thread."""
         self._shown.model = self._shown.cells = None
+        self.wishes.give_up()
         self.pointing.forget()
         if candidates is not None and len(candidates.nodes) > MANY_NODES:
+            # Until they are ready nothing is to be pointed at: the grid before is not theirs.
+            self.canvas.set_cells(0, np.empty(0))
             self.canvas.show_cells(None, None, self._shown.colours)
             self.extras.prepare(candidates)
         else:
@@ -353,6 +359,10 @@ class MapView(QWidget):
         self.canvas.forbidding = forbidding
         if forbidding:
             self.setFocus()
+
+    def _on_stale(self, stale: bool) -> None:
+        if stale:
+            self.wishes.give_up()
 
     def _on_place(self, place: float) -> None:
         self.canvas.show_cursor(place)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QPoint, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
     QFont,
@@ -40,6 +40,8 @@ ROW = 22.0
 BAR_WIDTH = 240.0
 MARGIN = 8.0
 LEAST_HEIGHT = 28
+NOTICE_ROOM = 220.0
+"""Least width [px] that the legend leaves a notice in one of its rows."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,7 +64,13 @@ class Bar:
 
 
 class LegendStrip(QWidget):
-    """Colour bar and chips in one row, or in more where there is no room."""
+    """Colour bar and chips in one row, or in more where there is no room.
+
+    One row always has room for a notice beside its chips, so that neither covers the other and
+    nothing jumps when the notice comes and goes; `arranged` tells that this room is another one.
+    """
+
+    arranged = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -95,12 +103,24 @@ class LegendStrip(QWidget):
         return font
 
     def _fit(self) -> None:
-        places = self._places()
-        last = places[-1].y() if places else 0.0
-        height = int(last + ROW) if places else int(ROW)
-        height = max(height, LEAST_HEIGHT)
+        height = max(int(self.free_row().y() + ROW), LEAST_HEIGHT)
+        if self._chips:
+            height = max(height, int(self._places()[-1].y() + ROW))
         if height != self.minimumHeight() or height != self.maximumHeight():
             self.setFixedHeight(height)
+        self.arranged.emit()
+
+    def free_row(self) -> QRectF:
+        """Where a notice covers nothing: right of the chips of a row, or a row of its own."""
+        ends = {0.0: self._bar_end()}
+        for chip, place in zip(self._chips, self._places(), strict=True):
+            ends[place.y()] = place.x() + self._chip_width(chip) + GAP
+        y, left = min(ends.items(), key=lambda one: (one[1], one[0]))
+        room = self.width() - MARGIN - left
+        if room < NOTICE_ROOM:
+            y, left = max(ends) + (ROW if self._chips else 0.0), self._bar_end()
+            room = self.width() - MARGIN - left
+        return QRectF(left, y, max(room, 80.0), ROW)
 
     def _bar_end(self) -> float:
         if self._bar is None:
@@ -108,13 +128,15 @@ class LegendStrip(QWidget):
         metrics = QFontMetricsF(self._font())
         return MARGIN + metrics.horizontalAdvance(self._bar.title) + 8.0 + BAR_WIDTH + 2.0 * GAP
 
+    def _chip_width(self, chip: Chip) -> float:
+        return CHIP + 5.0 + QFontMetricsF(self._font()).horizontalAdvance(chip.text)
+
     def _places(self) -> list[QPointF]:
-        metrics = QFontMetricsF(self._font())
         start = self._bar_end()
         x, y = start, 0.0
         places = []
         for chip in self._chips:
-            width = CHIP + 5.0 + metrics.horizontalAdvance(chip.text)
+            width = self._chip_width(chip)
             if x + width > self.width() - MARGIN and x > start:
                 x, y = start, y + ROW
             places.append(QPointF(x, y))
@@ -232,14 +254,14 @@ class HoverCard(QFrame):
 class Notice(QFrame):
     """A sentence in the legend's row, in the colour of what it tells; it can be clicked.
 
-    It covers as much of the legend as it needs and nothing of the map; where the row is too
-    short, the rest is in the tool tip. A button beside it can offer what helps.
+    It stands beside the chips and covers none of them, and nothing of the map; where the row is
+    too short, the rest is in the tool tip. A button beside it can offer what helps.
     """
 
     clicked = Signal()
     acted = Signal()
 
-    def __init__(self, parent: QWidget) -> None:
+    def __init__(self, parent: LegendStrip) -> None:
         super().__init__(parent)
         self._room = parent
         self.setObjectName("map_notice")
@@ -254,7 +276,7 @@ class Notice(QFrame):
         layout.addWidget(self.button)
         self._theme: Theme | None = None
         self._severity = "info"
-        parent.installEventFilter(self)
+        parent.arranged.connect(self._place)
         self.hide()
 
     @property
@@ -291,15 +313,11 @@ class Notice(QFrame):
         wanted = self._label.fontMetrics().horizontalAdvance(self.text) + 26
         if self.button.text():
             wanted += self.button.sizeHint().width() + 8
-        width = max(80, min(wanted, self._room.width() - 2 * int(MARGIN)))
-        self.setFixedSize(width, LEAST_HEIGHT - 2)
-        self.move(self._room.width() - width - int(MARGIN), 0)
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
-        """Stay at the right end when the row changes its size."""
-        if event.type() == QEvent.Type.Resize and self.isVisible():
-            self._place()
-        return super().eventFilter(watched, event)
+        free = self._room.free_row()
+        width = min(wanted, int(free.width()))
+        low = free.y() > 0.0
+        self.setFixedSize(width, int(ROW) if low else LEAST_HEIGHT - 2)
+        self.move(self._room.width() - width - int(MARGIN), int(free.y()))
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         """Go where it happened."""

@@ -53,6 +53,7 @@ class Wishes(QObject):
         self._held: Cell | None = None
         self._following = object()
         self._mouse = QPoint()
+        self._menu: QMenu | None = None
         canvas.clicked.connect(self._go)
         canvas.double_clicked.connect(self._pin_cell)
         canvas.line_near.connect(self._show_grip)
@@ -102,16 +103,18 @@ class Wishes(QObject):
 
     def _candidate(self, cell: Cell) -> Hover | None:
         """What stands in a cell on the shown page."""
-        shown = self._shown
-        if shown.model is None or shown.cells is None:
+        found = self._shown.reading(cell)
+        if found is None:
             return None
-        found = shown.model.reading(shown.cells, cell.waypoint, cell.row)
         return Hover(found.waypoint, found.orientation, found.slot, found.turn)
 
     def _passed(self, waypoint: int) -> Hover | None:
         """What the shown sequence passes at a waypoint."""
         sequence, model = self._session.sequence, self._shown.model
-        if sequence is None or model is None or waypoint >= len(sequence.nodes):
+        # The nodes are numbers among the candidates of that plan alone.
+        if self._session.result is not self._shown.result or sequence is None or model is None:
+            return None
+        if not 0 <= waypoint < len(sequence.nodes):
             return None
         node = int(sequence.nodes[waypoint])
         _, orientation, slot, turn = map(int, model.candidates.nodes.candidate[node])
@@ -128,6 +131,8 @@ class Wishes(QObject):
 
     def _drag(self, cell: Cell, mouse: QPoint) -> None:
         """Ask what it would cost to pass here; the answer comes with the session's signal."""
+        if not self._shown.holds(cell):
+            return
         self._mouse = mouse
         changed = cell != self._held
         self._held = cell
@@ -143,7 +148,7 @@ class Wishes(QObject):
     def show_price(self) -> None:
         """Show beside the mouse where the line is held and what that costs."""
         model, held = self._shown.model, self._held
-        if held is None or model is None:
+        if held is None or model is None or not self._shown.holds(held):
             return
         # The line follows the hand first; then, in turns of their own, all other views.
         self._session.turns.ask(self._following, self._follow)
@@ -170,7 +175,7 @@ class Wishes(QObject):
     def _follow(self) -> None:
         """Have all views look at the pose that is held."""
         held = self._held
-        if held is None or self._shown.model is None:
+        if held is None or self._shown.model is None or not self._shown.holds(held):
             return
         passed = self._passed(held.waypoint)
         answer = self._session.answer
@@ -183,7 +188,10 @@ class Wishes(QObject):
 
     def _drop(self, cell: Cell) -> None:
         self._let_go()
-        self._session.pin(cell.waypoint, self._lean(cell.row), self._branch, self._turn)
+        if self._shown.holds(cell):
+            self._session.pin(cell.waypoint, self._lean(cell.row), self._branch, self._turn)
+        else:
+            self._session.end_preview()
 
     def _let_go(self) -> None:
         self._held = None
@@ -191,6 +199,17 @@ class Wishes(QObject):
         self._session.set_hover(None)
         self.price.hide()
         self._canvas.show_handle(None, self._shown.colours)
+
+    def give_up(self, *_: object) -> None:
+        """Give up what is under way: the cells that it was meant for are others now."""
+        self._canvas.leave()
+        self._canvas.show_rubber(None, None, self._shown.colours)
+        self._canvas.show_handle(None, self._shown.colours)
+        if self._menu is not None:
+            self._menu.close()
+        if self._held is not None:
+            self._let_go()
+            self._session.end_preview()
 
     def leave(self) -> bool:
         """Give up what is being dragged or drawn; False where nothing is."""
@@ -240,6 +259,8 @@ class Wishes(QObject):
 
     def _draw_area(self, first: Cell, other: Cell, done: bool) -> None:
         self._pointing.point(None, QPoint())
+        if not (self._shown.holds(first) and self._shown.holds(other)):
+            return
         if not done:
             self._canvas.show_rubber(first, other, self._shown.colours)
             return
@@ -279,10 +300,11 @@ class Wishes(QObject):
         return menu
 
     def _fill_cell_menu(self, menu: QMenu, cell: Cell) -> None:
-        shown, number = self._shown, cell.waypoint + 1
-        if shown.model is None or shown.cells is None:
+        """Each entry does what it says, whatever the map shows by then."""
+        reading, number = self._shown.reading(cell), cell.waypoint + 1
+        if reading is None:
             return
-        reading = shown.model.reading(shown.cells, cell.waypoint, cell.row)
+        exact, region = self._lean(cell.row), self.region(cell, cell)
         lean = degrees(reading.lean)
         words = self._tr("Go to waypoint {number}", number=number)
         self._add(menu, words, lambda: self._session.set_cursor(cell.waypoint))
@@ -291,22 +313,24 @@ class Wishes(QObject):
         pose.setEnabled(reading.node is not None)
         any_branch = self._add(
             menu, self._tr("Pin lean {lean}, any branch", lean=lean),
-            lambda: self._session.pin(cell.waypoint, self._lean(cell.row)),
+            lambda: self._session.pin(cell.waypoint, exact),
         )  # fmt: skip
         any_branch.setEnabled(reading.node is not None)
         pinned = any(one.waypoint == cell.waypoint for one in self._session.document.state.pins)
         if pinned:
             words = self._tr("Unpin waypoint {number}", number=number)
             self._add(menu, words, lambda: self._session.unpin(cell.waypoint))
-        self._add(
-            menu, self._tr("Forbid this pose"),
-            lambda: self._session.forbid(self.region(cell, cell)),
-        )  # fmt: skip
-        for region in self.regions_at(cell):
-            self._add(
-                menu, self._tr("Allow this region again"),
-                partial(self._session.allow, region),
-            )  # fmt: skip
+        self._add(menu, self._tr("Forbid this pose"), lambda: self._session.forbid(region))
+        regions = self._session.document.state.regions
+        for place in self.regions_at(cell):
+            words = self._tr("Allow this region again")
+            self._add(menu, words, partial(self._allow, regions[place]))
+
+    def _allow(self, region: Region) -> None:
+        """Take a region away, wherever it stands among the others by now."""
+        regions = self._session.document.state.regions
+        if region in regions:
+            self._session.allow(regions.index(region))
 
     def _add(self, menu: QMenu, text: str, run: Callable[[], object]) -> QAction:
         action = QAction(text, menu)
@@ -315,6 +339,10 @@ class Wishes(QObject):
         return action
 
     def _show_menu(self, cell: Cell | None, place: QPoint) -> None:
-        menu = self.menu(cell)
+        menu = self._menu = self.menu(cell)
+        menu.aboutToHide.connect(self._forget_menu)
         menu.aboutToHide.connect(menu.deleteLater)
         menu.popup(place)
+
+    def _forget_menu(self) -> None:
+        self._menu = None

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 from PySide6.QtCore import QObject, QTimer
 
 from posopt_gui.controllers.session import Hover, Session
+from posopt_gui.views.refresh import REST as HAND_RESTS
 from solver.candidates.outcomes import Outcome
 
 if TYPE_CHECKING:
@@ -59,7 +60,8 @@ class SceneGhost(QObject):
             self._rest.stop()
             self._show()
         else:
-            self._rest.start()
+            # A drawing at every step of a drag would hold up the line that follows the hand.
+            self._rest.start(HAND_RESTS if self._session.previewing else REST)
 
     def _show(self) -> None:
         canvas, hover = self._view.canvas, self._session.hover

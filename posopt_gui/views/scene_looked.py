@@ -49,7 +49,7 @@ class Looked:
         """Clearance and contact of the solid pose; of a stale plan nothing is said."""
         session = self._session
         whole = session.place == session.cursor
-        known = not session.stale and session.sequence is not None
+        known = not session.stale and session.sequence is not None and self._fits(probe)
         self.report = None
         if probe is not None and known and (probe.quick or whole):
             self.report = probe.measure(self.joints(cell), session.cursor)
@@ -58,9 +58,14 @@ class Looked:
         """Clearance and contact of the ghost."""
         pose = self.pose_of(self.ghost)
         self.ghost_report = None
-        known = pose is not None and not self._session.stale
+        known = pose is not None and not self._session.stale and self._fits(probe)
         if probe is not None and pose is not None and self.ghost is not None and known:
             self.ghost_report = probe.measure(pose.joints, self.ghost.waypoint)
+
+    def _fits(self, probe: PoseProbe | None) -> bool:
+        """Whether what measures belongs to the plan, and not to the one before it."""
+        result = self._session.result
+        return probe is not None and result is not None and probe.problem is result.problem
 
     def notes(self, cell: CellModel | None) -> list[str]:
         """Lines about what is shown."""
@@ -75,7 +80,7 @@ class Looked:
             return [tr("The drawing shows the cell before the last change.")]
         of = self.ghost if self.ghost_report is not None else session.kept
         lines = note_lines(tr, cell, self.shown_report, stale=session.stale)
-        if of is None or session.result is None:
+        if of is None or session.result is None or not of.stands_in(session.result.candidates):
             return lines
         words = candidate_line(session.result, of.waypoint, of.orientation, of.branch, tr)
         return [words, *lines]

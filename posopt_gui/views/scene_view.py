@@ -14,6 +14,7 @@ from posopt_gui.viewmodels.error_words import error_words
 from posopt_gui.viewmodels.scene_jobs import build_cell, build_probe
 from posopt_gui.views.camera import CLOSE_UP, FIELD_OF_VIEW, PRESETS, Camera, close_up_of, fitted
 from posopt_gui.views.opengl import is_available
+from posopt_gui.views.picture_file import save_picture
 from posopt_gui.views.refresh import Refresh
 from posopt_gui.views.scene_ghost import SceneGhost
 from posopt_gui.views.scene_looked import Looked
@@ -162,13 +163,9 @@ class SceneView(QWidget):
 
     def save_picture(self, file: Path) -> bool:
         """Write what is seen to a picture file; says in the session how that went."""
-        if self.grab_image().save(str(file)):
-            text = self._tr("The picture was saved: {file}", file=file)
-            self.session.say(Message("info", text))
-            return True
-        text = self._tr("The picture cannot be written to {file}; try another folder.", file=file)
-        self.session.say(Message("error", text))
-        return False
+        said = save_picture(self.grab_image(), file, self._tr)
+        self.session.say(said)
+        return said.severity != "error"
 
     def look_from(self, preset: str) -> None:
         """Move the camera to a preset."""

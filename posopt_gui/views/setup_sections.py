@@ -91,7 +91,7 @@ class SectionBox(QWidget):
         self._make_extra = extra
         self._extra: QWidget | None = None
         self._cell: Cell = {}
-        self._open = False
+        self._open = self._wrong = False
         self._error = ""
         self.rows: dict[tuple[object, ...], FieldRow] = {}
         self._header = _Header(self)
@@ -154,7 +154,7 @@ class SectionBox(QWidget):
 
     def set_error(self, key: str, sentence: str) -> None:
         """Show a sentence at a field ('' for the section itself); '' as sentence clears all."""
-        self._header.mark(bool(sentence))
+        self._wrong = bool(sentence)
         self._error = "" if key else sentence
         for row in self.rows.values():
             row.set_error(sentence if key and row.field.key == key else "")
@@ -162,6 +162,11 @@ class SectionBox(QWidget):
             self._error = sentence
         self._sentence.setText(self._error)
         self._sentence.setVisible(bool(self._error))
+        self._mark()
+
+    def _mark(self) -> None:
+        refused = any(row.refusal is not None for row in self.rows.values())
+        self._header.mark(self._wrong or refused)
 
     def retranslate(self) -> None:
         """Set every text again."""
@@ -221,6 +226,7 @@ class SectionBox(QWidget):
             row = FieldRow(field, self._tr, self._body)
             row.edited.connect(lambda value, row=row: self._on_edited(row, value))
             row.focused.connect(lambda row=row: self.focused.emit(row))
+            row.refused_changed.connect(self._mark)
             row.file_wanted.connect(lambda row=row: self.file_wanted.emit(row.field.key))
             self.rows[key] = row
         elif row.field != field:

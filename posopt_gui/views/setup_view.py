@@ -21,6 +21,7 @@ from posopt_gui.viewmodels.cell_facts import Catalogue, in_mm
 from posopt_gui.viewmodels.cell_form import Form, cell_form
 from posopt_gui.viewmodels.error_words import error_words
 from posopt_gui.viewmodels.form_types import Field, at, rows_of
+from posopt_gui.viewmodels.path_words import path_words
 from posopt_gui.viewmodels.project_files import kept_files, key_of_file, path_file
 from posopt_gui.views.beam_drawing_view import BeamDrawingView
 from posopt_gui.views.field_widgets import FieldRow
@@ -64,6 +65,7 @@ class SetupView(QWidget):
         self.path = SetupPath(session, self)
         self.path.questions.connect(self.path_questions)
         self.path.refused.connect(self._on_refused)
+        self.path.loaded.connect(self._show_path)
         self.fixtures = SetupFixtures(session, self)
         self.fixtures.chosen_changed.connect(self.refresh)
         self.fixtures.refused.connect(self._on_mesh_refused)
@@ -114,6 +116,16 @@ class SetupView(QWidget):
             self._boxes[section.name].show_section(section, state.cell)
         self._show_extras()
         self._show_error()
+
+    def refused_row(self) -> FieldRow | None:
+        """The first field with a text that is not taken; None where there is none."""
+        rows = (row for box in self._boxes.values() for row in box.rows.values())
+        return next((row for row in rows if row.refusal is not None), None)
+
+    def forget_typed(self) -> None:
+        """Drop every text that is not taken."""
+        while (row := self.refused_row()) is not None:
+            row.forget_typed()
 
     def retranslate(self) -> None:
         """Set every text again."""
@@ -285,11 +297,7 @@ class SetupView(QWidget):
         problem = self._session.problem
         if problem is None:
             return ""
-        path = problem.toolpath
-        return self._tr(
-            "Waypoints: {count} · passes: {passes} · frame: {frame}",
-            count=len(path), passes=len(path.passes), frame=path.frame.value,
-        )  # fmt: skip
+        return path_words(problem.toolpath, self._tr)
 
     def _on_edited(self, field: Field, value: Any) -> None:
         assert self._form is not None
@@ -315,6 +323,15 @@ class SetupView(QWidget):
         elif sentence:
             box.set_open(True)
         self._show_extras()
+
+    def _show_path(self) -> None:
+        """Open the section of the path, and scroll to it."""
+        box = self._boxes.get("path")
+        if box is None:
+            return
+        box.set_open(True)
+        bar = self._scroll.verticalScrollBar()
+        QTimer.singleShot(0, box, lambda: bar.setValue(box.y()))
 
     def _on_mesh_refused(self, key: str, sentence: str) -> None:
         name, field_key = self._form.place_of(key) if key and self._form else ("fixtures", "")

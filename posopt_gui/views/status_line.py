@@ -14,7 +14,7 @@ from posopt_gui.viewmodels.verdicts import gate_words, plan_note
 from posopt_gui.views.shell_parts import ElidedLabel
 
 STAGES: Final[Mapping[str, str]] = {
-    "compiling": "Planning: compiling the kernels, once (a minute or two)",
+    "compiling": "Planning: compiling the kernels, once (up to a few minutes)",
     "candidates": "Planning: solving and filtering the poses",
     "meshes": "Planning: distances to meshes",
     "nodes": "Planning: adding full turns of the joints",

@@ -44,7 +44,7 @@ class TextEdit(QLineEdit):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._text = ""
-        self.editingFinished.connect(self._commit)
+        self.editingFinished.connect(self.commit)
         EscapeLeaves(self, lambda: self.setText(self._text)).focused.connect(self.focused)
 
     def show_text(self, text: str) -> None:
@@ -54,7 +54,8 @@ class TextEdit(QLineEdit):
             self.setText(text)
             self.setCursorPosition(0)
 
-    def _commit(self) -> None:
+    def commit(self) -> None:
+        """Apply what was typed, as Enter does."""
         text = self.text().strip()
         if text != self._text:
             self._text = text

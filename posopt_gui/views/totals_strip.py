@@ -32,6 +32,7 @@ class TotalsStrip(QWidget):
         self._totals: tuple[Total, ...] = ()
         self._sentence = ""
         self._waypoint = "{number}"
+        self._old = False
         self._grid = QGridLayout(self)
         self._grid.setContentsMargins(10, 8, 10, 6)
         self._grid.setHorizontalSpacing(SPACING)
@@ -64,9 +65,8 @@ class TotalsStrip(QWidget):
         """Say that the numbers are those of older inputs."""
         self._stale.setText(words)
         self._stale.setVisible(stale and bool(self._totals))
-        for label in (*self._names, *self._values):
-            label.setEnabled(not stale)
-        self._fit()
+        self._old = stale
+        self._show()
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         """The window must not become wider because of the numbers."""
@@ -82,7 +82,11 @@ class TotalsStrip(QWidget):
         room = (
             self.width()
             - 20
-            - sum(one.sizeHint().width() for one in beside if not one.isHidden() and one.text())
+            - sum(
+                one.sizeHint().width() + SPACING
+                for one in beside
+                if not one.isHidden() and one.text()
+            )
         )
         for index, (name, value) in enumerate(zip(self._names, self._values, strict=True)):
             room -= max(name.sizeHint().width(), value.sizeHint().width()) + SPACING
@@ -110,11 +114,14 @@ class TotalsStrip(QWidget):
             name.setText(total.label)
             name.setStyleSheet(f"color: {self._theme.muted};")
             colour = colours.get(total.state, self._theme.text)
+            link = self._theme.accent
+            if self._old:
+                colour = link = self._theme.muted
             text = total.value
             if total.waypoint is not None:
                 words = self._waypoint.format(number=total.waypoint + 1)
                 text += (
-                    f' <a href="{total.waypoint}" style="color:{self._theme.accent};'
+                    f' <a href="{total.waypoint}" style="color:{link};'
                     f'text-decoration:none">{words}</a>'
                 )
             value.setText(text)

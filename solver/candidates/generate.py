@@ -15,7 +15,7 @@ from solver.candidates.kernels_candidates import evaluate_poses, expand_nodes
 from solver.candidates.meshes import MeshChecker
 from solver.candidates.outcomes import Outcome
 from solver.collision.scene import CollisionScene, build_scene
-from solver.errors import ModelError
+from solver.errors import Cancelled, ModelError
 from solver.kinematics.arm import representative_capacity
 from solver.model.problem import PlanningProblem
 from solver.model.settings import PlanningSettings, Turns
@@ -150,7 +150,8 @@ def generate(
     threads = usable_cores() if threads is None else threads
     monitor = monitor or SilentMonitor()
     settings = problem.settings
-    if not kernels_are_cached():
+    compiles = not kernels_are_cached()
+    if compiles:
         monitor.report(COMPILING, 0, 1)
     scene = build_scene(problem)
     angles = orientations(settings)
@@ -197,7 +198,8 @@ def generate(
             np.empty((capacity, 6)),
         )
 
-    _in_pieces("candidates", shape[0] * shape[1], POSES_PER_CALL, evaluate, monitor, threads)
+    poses = shape[0] * shape[1]
+    _in_pieces("candidates", poses, POSES_PER_CALL, evaluate, monitor, threads, quiet=compiles)
     if scene.meshes:
         MeshChecker(scene).apply(joints, touch, arm, outcome, clearance, monitor)
     nodes = _expand(problem, joints, outcome, turns, clearance, monitor, threads)
@@ -213,18 +215,25 @@ def _in_pieces(
     work: Callable[[int, int], None],
     monitor: Monitor,
     threads: int,
+    *,
+    quiet: bool = False,
 ) -> None:
     """Call `work` with the begin and end of pieces of 0..total, each of which stands alone.
 
-    The first piece runs in the calling thread, which compiles what is not compiled yet.
+    The first piece runs in the calling thread, which compiles what is not compiled yet; with
+    `quiet` the stage is told only once it has returned, so that what was told before stays true.
     """
     begins = range(0, total, size)
+    if quiet and monitor.cancelled():
+        raise Cancelled
     if threads < 2 or len(begins) < 3:
         for begin in begins:
-            checkpoint(monitor, stage, begin, total)
+            if begin or not quiet:
+                checkpoint(monitor, stage, begin, total)
             work(begin, min(begin + size, total))
         return
-    checkpoint(monitor, stage, 0, total)
+    if not quiet:
+        checkpoint(monitor, stage, 0, total)
     work(0, size)
     pool = ThreadPoolExecutor(min(threads, len(begins) - 1))
     try:

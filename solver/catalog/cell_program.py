@@ -11,6 +11,7 @@ import numpy as np
 from solver.catalog.toml_reader import Table
 from solver.io.importers.words import read_event
 from solver.io.posts import POSTS
+from solver.model.program_names import is_device_name
 from solver.model.program_settings import (
     Accuracy,
     ContactMotion,
@@ -132,6 +133,8 @@ def _pattern(table: Table, key: str, default: str, pattern: re.Pattern[str], exp
     value = table.text(key, default)
     if not pattern.fullmatch(value):
         raise table.error(key, f"expected {expected}, found {value[:40]!r}")
+    if is_device_name(value):
+        raise table.error(key, f"expected a name that is no device of Windows, found {value!r}")
     return value
 
 

@@ -5,9 +5,14 @@ from __future__ import annotations
 import argparse
 import math
 import re
-from typing import NoReturn
+from dataclasses import replace
+from typing import TYPE_CHECKING, NoReturn
 
 from solver.errors import InputError
+from solver.units import MM
+
+if TYPE_CHECKING:
+    from solver.model.problem import PlanningProblem
 
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
@@ -56,3 +61,22 @@ def positive_number(text: str, what: str) -> float:
     if value <= 0.0:
         raise InputError(f"{what}: expected a number above zero, got {text.strip()}")
     return value
+
+
+def add_resample(parser: argparse.ArgumentParser) -> None:
+    """Declare --resample, which `resampled` takes."""
+    parser.add_argument(
+        "--resample",
+        metavar="MM",
+        help="put waypoints along the path so that neighbours are at most MM mm apart",
+    )
+
+
+def resampled(problem: PlanningProblem, step: str | None) -> PlanningProblem:
+    """The problem with waypoints at most `step` mm apart; None keeps its own."""
+    if step is None:
+        return problem
+    from solver.io.importers import resample
+
+    length = positive_number(step, "--resample") * MM
+    return replace(problem, toolpath=resample(problem.toolpath, length))

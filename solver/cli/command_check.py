@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from solver.cli.arguments import add_resample, resampled
 from solver.cli.output import TerminalMonitor, emit_json, refused, say
 from solver.errors import InputError, RefusedError, UnknownNameError
 
@@ -26,6 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--beam", metavar="NAME", help="the beam, where it is not the cell's")
     parser.add_argument("--path", metavar="F", help="the path file, where it is not the cell's")
+    add_resample(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -64,11 +66,27 @@ def run(options: argparse.Namespace) -> int:
     if report.failed:
         names = ", ".join(check.name for check in report.failed)
         message = f"{len(report.failed)} of {len(report.checks)} checks failed: {names}"
+        message += _hint(options, [check.name for check in report.failed])
         return refused(options.command, RefusedError(message))
     if options.as_json != "-":
         count = len(report.checks)
         say(f"all {count} checks passed on the nominal model of cell {problem.name}")
     return 0
+
+
+def _hint(options: argparse.Namespace, failed: list[str]) -> str:
+    """What may be meant where the program does not follow the path that it is compared with."""
+    leaves = any(name.startswith("path") for name in failed)
+    if options.path is None:
+        if not leaves:
+            return ""
+        return (
+            "; it was compared with the cell's own path: if it was planned from another path, give "
+            "that with --path F (and --resample MM as it was planned)"
+        )
+    if options.resample is None and (leaves or "cell digest" in failed):
+        return "; if it was planned with --resample MM, give that too"
+    return ""
 
 
 def _problem(options: argparse.Namespace, main: ProgramFile) -> PlanningProblem:
@@ -81,7 +99,7 @@ def _problem(options: argparse.Namespace, main: ProgramFile) -> PlanningProblem:
         raise InputError(f"{options.program}: no remark names its cell; give it with --cell CELL")
     beam = options.beam or (None if options.cell else remark_value(main, BEAM_REMARK))
     try:
-        return load_cell(cell, beam=beam, path=options.path)
+        return resampled(load_cell(cell, beam=beam, path=options.path), options.resample)
     except UnknownNameError as error:
         if options.cell:
             raise

@@ -5,10 +5,14 @@ from __future__ import annotations
 import argparse
 import platform
 from importlib import metadata
+from typing import TYPE_CHECKING
 
 from solver.cli.output import emit_json, refused, say
 from solver.errors import RefusedError
 from solver.units import MM_PER_M
+
+if TYPE_CHECKING:
+    from solver.collision.fcl_checks import DistanceCheck
 
 HELP = "show versions and test this installation"
 PACKAGES = (
@@ -66,9 +70,19 @@ def run(options: argparse.Namespace) -> int:
             say(f"{name:<20} {version}")
         say("resources            " + ", ".join(f"{n} {kind}" for kind, n in shipped.items()))
         for one in tests:
-            word = "ok   " if one.ok else "WRONG"
-            say(f"{word} {one.name}: expected {one.expected:.6f} m, found {one.found:.6f} m")
+            say(_told(one, relied_on=one in needed))
     if failed:
         message = f"the self-test failed: {', '.join(failed)}"
         return refused(options.command, RefusedError(message))
+    if options.as_json != "-":
+        say(f"this installation is sound: all {len(needed)} distances that are relied on are right")
     return 0
+
+
+def _told(one: DistanceCheck, *, relied_on: bool) -> str:
+    """A distance of the self-test in one line; a fault that harms nothing is no alarm."""
+    found = f"{one.name}: expected {one.expected:.6f} m, found {one.found:.6f} m"
+    if one.ok:
+        return f"ok    {found}"
+    known = "known fault of python-fcl, not relied on"
+    return f"WRONG {found}" if relied_on else f"note  {found}; {known}"

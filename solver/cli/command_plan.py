@@ -8,13 +8,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from solver.cli.arguments import positive_number
+from solver.cli.arguments import add_resample, positive_number, resampled
 from solver.cli.output import TerminalMonitor, emit_json, refused, say
 from solver.errors import RefusedError
 from solver.model.settings import Scheme
 from solver.units import MM
 
 if TYPE_CHECKING:
+    from solver.model.problem import PlanningProblem
     from solver.pipeline.programming import ProgramOrder, WrittenProgram
 
 HELP = "plan a cell, write its program and print the summary"
@@ -31,6 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"name or TOML file of a cell (default {DEFAULT_CELL})",
     )
     parser.add_argument("--path", metavar="F", help="another path file for the cell")
+    add_resample(parser)
     parser.add_argument("--beam", metavar="NAME", help="another beam, such as HW250 or HEA200")
     parser.add_argument(
         "--scheme",
@@ -75,6 +77,7 @@ def run(options: argparse.Namespace) -> int:
 
     order = _order(options)
     problem = load_cell(options.cell, beam=options.beam, path=options.path)
+    problem = resampled(_titled(problem, options), options.resample)
     if options.scheme:
         scheme = Scheme(options.scheme)
         problem = replace(problem, settings=replace(problem.settings, scheme=scheme))
@@ -102,10 +105,30 @@ def run(options: argparse.Namespace) -> int:
     if options.as_json:
         emit_json(result_document(result, written, refusal), options.as_json)
     if refusal is not None:
-        return refused(options.command, refusal)
+        return refused(options.command, _with_hint(refusal, options))
     if written is not None and options.as_json != "-":
-        _report(written, needless=order.accepted_clearance is not None and result.clearance_met)
+        needless = order.accepted_clearance is not None and result.clearance_met
+        count = None if order.simplify is None else len(problem.toolpath)
+        _report(written, needless=needless, of_waypoints=count)
     return 0
+
+
+def _titled(problem: PlanningProblem, options: argparse.Namespace) -> PlanningProblem:
+    """The problem with what was put in place of the cell's own in its title."""
+    beam = f"beam {problem.workpiece.name}" if options.beam else ""
+    path = f"path {Path(options.path).name}" if options.path else ""
+    changed = " and ".join(one for one in (beam, path) if one)
+    if not changed:
+        return problem
+    return replace(problem, title=f"{problem.title or problem.name}; here with {changed}")
+
+
+def _with_hint(refusal: RefusedError, options: argparse.Namespace) -> RefusedError:
+    """The refusal, and what to do where the robot leaves the path between distant points."""
+    if options.resample is not None or "path between positions" not in str(refusal):
+        return refusal
+    hint = "if the points of the path are far apart, --resample 10 puts one at least every 10 mm"
+    return RefusedError(f"{refusal}; {hint}")
 
 
 def _order(options: argparse.Namespace) -> ProgramOrder:
@@ -125,8 +148,11 @@ def _order(options: argparse.Namespace) -> ProgramOrder:
 _SHOWN = ("clearance", "between", "links", "net", "path between", "feed")
 
 
-def _report(written: WrittenProgram, *, needless: bool) -> None:
-    """Say what was written, how near it comes, how fast it runs, and what failed."""
+def _report(written: WrittenProgram, *, needless: bool, of_waypoints: int | None) -> None:
+    """Say what was written, how near it comes, how fast it runs, and what failed.
+
+    `of_waypoints` is how many waypoints there were to simplify, None where that was not asked.
+    """
     for check in written.checks:
         if check.name.startswith(_SHOWN) or not check.passed:
             say(str(check))
@@ -136,6 +162,14 @@ def _report(written: WrittenProgram, *, needless: bool) -> None:
             f"estimated cycle {cycle.total:.1f} s: {cycle.grinding:.1f} s grinding, "
             f"{cycle.linking:.1f} s on links, {cycle.waiting:.1f} s waiting "
             "(accelerations are assumed)"
+        )
+    if of_waypoints is not None:
+        kept = sum(move.waypoint is not None for move in written.program.moves)
+        dropped = of_waypoints - kept
+        say(
+            f"--simplify dropped {dropped} of {of_waypoints} positions"
+            if dropped
+            else "--simplify dropped no position: the program needs every one to keep what is asked"
         )
     if needless:
         say("the safety distance is met; --accept-clearance was not needed")

@@ -22,7 +22,7 @@ _BAR = 28
 _FIRST_SHOWN = 0.5
 _INTERVAL = 0.1
 _COMPILING_NOTE = (
-    "compiling the kernels; this takes a minute or two, once after an installation or update"
+    "compiling the kernels; this takes up to a few minutes, once after an installation or update"
 )
 
 

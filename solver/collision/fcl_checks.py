@@ -18,8 +18,8 @@ from solver.errors import ModelError
 from solver.model.shapes import Box, Capsule, ConvexShape, Cylinder, Hull, Mesh, Shape, Sphere
 from solver.transforms import FloatArray, rigid
 
-NOT_RELIED_ON: Final = "python-fcl primitive distance (not relied on)"
-"""Beginning of the names of checks whose failure is known and harms nothing."""
+NOT_RELIED_ON: Final = "python-fcl primitive distance"
+"""Beginning of the names of checks whose failure is known and not relied on."""
 
 ALLOWED: Final = 1e-6
 """Error [m] up to which a distance counts as right."""

@@ -66,3 +66,21 @@ def test_two_threads_stop_at_the_report_that_asks_for_it(problem, patience):
     with pytest.raises(Cancelled):
         generate(problem, recorder, threads=2)
     assert len(recorder.reports) == patience
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_compiling_is_told_until_the_first_kernel_has_returned(problem, monkeypatch, threads):
+    from solver.candidates import generate as module
+
+    kernel, told, before = module.evaluate_poses, Recorder(10**9), []
+
+    def watched(*arguments):
+        if not before:
+            before.extend(told.reports)
+        kernel(*arguments)
+
+    monkeypatch.setattr(module, "kernels_are_cached", lambda: False)
+    monkeypatch.setattr(module, "evaluate_poses", watched)
+    generate(problem, told, threads=threads)
+    assert [stage for stage, _, _ in before] == ["compiling"]
+    assert "candidates" in {stage for stage, _, _ in told.reports}

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QPushButton
 from posopt_gui.controllers.report import picture_bytes, report_of
 from posopt_gui.dialogs.export_dialog import ExportDialog
 from posopt_gui.look import Look
-from posopt_gui.viewmodels.export_model import ExportForm, ExportStage
+from posopt_gui.viewmodels.export_model import ExportForm, ExportStage, check_rows
 from solver.io.ls_reader import read_program_file
 
 SETTLED = {ExportStage.REFUSED, ExportStage.PASSED, ExportStage.FAULT}
@@ -23,6 +23,8 @@ class StillSession(QObject):
     problem_changed = Signal()
     stale_changed = Signal(bool)
     planning_changed = Signal(bool)
+    answering_changed = Signal(bool)
+    opened = Signal()
 
     def __init__(self, result):
         super().__init__()
@@ -30,7 +32,12 @@ class StillSession(QObject):
         self.result = self.chosen_result = result
         self.sequence = result.sequence if result is not None else None
         self.answer, self.stale, self.planning = None, False, False
+        self.answering = False
         self.plans, self.cursor, self.said = 0, None, []
+
+    @property
+    def settled_result(self):
+        return None if self.stale or self.answering else self.chosen_result
 
     def plan(self):
         self.plans += 1
@@ -188,8 +195,8 @@ def test_simplifying_drops_positions(opened, settle, result):
 
 def test_a_click_on_a_line_goes_to_its_waypoint(opened, settle, result):
     dialog = opened(result)
-    now = settle(dialog)
-    rows = [check.waypoint for check in now.draft.report.checks]
+    checks = check_rows(settle(dialog).draft.report.checks, dialog._session.look.tr)
+    rows = [check.waypoint for check in checks]
     row = next(number for number, waypoint in enumerate(rows) if waypoint is not None)
     dialog.checks.clicked.emit(dialog.checks.model().index(row, 4))
     assert dialog._session.cursor == rows[row]

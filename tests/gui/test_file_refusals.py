@@ -101,7 +101,7 @@ REFUSED = {
     "folder.toml": (folder, "folder"),
     "loop.toml": (loop, "cannot be read"),
     "pipe.toml": (pipe, "no regular file"),
-    "word.csv": (raw(CSV + b"0,0,zero,0,0,1\n"), "line 2, column 3"),
+    "word.csv": (raw(b"# frame: beam\n" + CSV + b"0,0,zero,0,0,1\n"), "line 3, column 3"),
     "utf16.csv": (raw((CSV + b"0,0,0,0,0,1\n").decode().encode("utf-16")), "line 1, column 1"),
     "huge.csv": (sparse(65 * 2**20), "bytes"),
     "folder.csv": (folder, "directory"),

@@ -93,7 +93,7 @@ def test_a_wish_shows_its_price_and_its_column(view, planned, qtbot):
     with qtbot.waitSignal(planned.result_changed, timeout=60_000):
         planned.pin(20, 0.0)
     planned.turns.finish()
-    assert "Price of your wishes" in view.totals.texts
+    assert "Price of your pins and regions" in view.totals.texts
     heads = [view.schemes.horizontalHeaderItem(c).text() for c in range(3)]
     assert heads[2] == "with your wishes"
 

@@ -213,7 +213,7 @@ def drop(widget, *paths):
 
 def test_a_dropped_path_file_is_one_step_with_its_bytes(qtbot, view, session, tmp_path):
     file = tmp_path / "short.csv"
-    file.write_text("x,y,z,w,p,r\n0,13,40,0,60,-90\n20,13,45,0,60,-90\n")
+    file.write_text("# frame: beam\nx,y,z,w,p,r\n0,13,40,0,60,-90\n20,13,45,0,60,-90\n")
     with qtbot.waitSignal(session.state_changed, timeout=60_000):
         drop(view, file)
     assert session.document.state.files == {"short.csv": file.read_bytes()}

@@ -73,7 +73,7 @@ def test_totals_are_those_of_the_shown_sequence(result):
     assert least.state == "good"
     change = np.abs(np.diff(np.rad2deg(sequence.pendant), axis=0)).sum()
     assert number(shown["Cumulative change"].value) == pytest.approx(change, abs=0.06)
-    assert "Price of your wishes" not in shown
+    assert "Price of your pins and regions" not in shown
 
 
 def test_a_wish_shows_its_price(result):
@@ -84,7 +84,7 @@ def test_a_wish_shows_its_price(result):
     other = next(lean for lean in own[clear] if abs(lean - planned) > 1e-6)
     answer = replan(result, [Pin(20, float(other))])
     shown = {one.label: one for one in totals(result, answer.sequence, answer, None, english)}
-    price = shown["Price of your wishes"].value
+    price = shown["Price of your pins and regions"].value
     assert number(price) == pytest.approx(answer.price, abs=1e-5)
     share = 100.0 * (answer.sequence.cost / result.sequence.cost - 1.0)
     assert f"({signed(share, 1)} %)" in price

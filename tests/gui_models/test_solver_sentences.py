@@ -227,3 +227,10 @@ def test_the_numbers_of_a_sentence_stay_in_it():
 )
 def test_sentences_are_said_as_a_person_would(text, shown):
     assert sentence(text, chinese) == shown
+
+
+def test_a_blank_stands_between_chinese_and_the_place_in_a_program():
+    said = sentence(
+        "at MY_GROOVE.LS:39", lambda text, **inside: translated("zh_CN", text).format(**inside)
+    )
+    assert said == "位于 MY_GROOVE.LS:39"

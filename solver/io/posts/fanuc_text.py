@@ -11,6 +11,7 @@ from typing import Final
 
 from solver.errors import ModelError
 from solver.model.program import JOINT_DECIMALS
+from solver.model.program_names import is_device_name
 from solver.units import MM_PER_M
 
 REMARK_LENGTH: Final = 32
@@ -132,6 +133,11 @@ def program_name(name: str, longest: int) -> str:
         raise ModelError(
             f"a program name has upper-case letters A-Z, digits and _, and begins with a letter, "
             f"got {name[:50]!r}"
+        )
+    if is_device_name(name):
+        raise ModelError(
+            "a program name is no device of Windows (CON, PRN, AUX, NUL, COM1, LPT1 ...), where no "
+            f"file can be called so, got {name!r}"
         )
     if len(name) > longest:
         raise ModelError(
