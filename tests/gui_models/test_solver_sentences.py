@@ -88,6 +88,7 @@ INSERTED = {
 }
 
 NAMES = {
+    "Windows",
     # files, formats and words of files
     "ASCII", "STL", "OBJ", "PLY", "GLB", "JSON", "CSV", "TOML", "UTF", "GBK", "NUL", "glTF", "XML",
     "PROG", "POS", "END", "APPL", "KEY", "value", "WAIT", "CALL", "FINE", "CNT", "CONFIG", "ASBN",
