@@ -9,7 +9,7 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt, Signal
 from PySide6.QtGui import QMouseEvent
-from PySide6.QtWidgets import QGraphicsSceneWheelEvent, QWidget
+from PySide6.QtWidgets import QGraphicsSceneResizeEvent, QGraphicsSceneWheelEvent, QWidget
 
 from solver.transforms import FloatArray
 
@@ -46,6 +46,15 @@ class WaypointAxis(pg.AxisItem):
         """No ticks between waypoints."""
         spacing = super().tickSpacing(*ends_and_size)
         return [(step, offset) for step, offset in spacing if step >= 1.0] or [(1.0, 0.0)]
+
+    def resizeEvent(  # noqa: N802 - Qt's name
+        self, event: QGraphicsSceneResizeEvent | None = None
+    ) -> None:
+        """Keep the title inside: pyqtgraph lets it stand out, and cuts high characters off."""
+        super().resizeEvent(event)
+        title = self.label
+        lowest = self.size().height() - title.boundingRect().height() + 2.0
+        title.setY(min(title.y(), lowest))
 
 
 class MapBox(pg.ViewBox):
