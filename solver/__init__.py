@@ -9,8 +9,9 @@ moment to compile the first time. docs/api.md has an example of each name.
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
+
+from solver.lazy_names import lazy_names
 
 if TYPE_CHECKING:
     from solver.analysis.references import references as references
@@ -83,16 +84,4 @@ _HOME: Final = {
 
 __all__ = sorted(_HOME)  # noqa: PLE0605 - a list of strings, kept in one place
 
-
-def __getattr__(name: str) -> Any:
-    """Load a public name from its home the first time it is asked for."""
-    if name not in _HOME:
-        raise AttributeError(f"module 'solver' has no attribute {name!r}")
-    value = getattr(import_module(_HOME[name]), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    """Names for completion."""
-    return sorted([*globals(), *_HOME])
+__getattr__, __dir__ = lazy_names(__name__, _HOME)

@@ -5,8 +5,9 @@ Loaded when it is first used: who only asks where the data lie needs no numpy.
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
+
+from solver.lazy_names import lazy_names
 
 if TYPE_CHECKING:
     from solver.catalog.beams import BeamEntry as BeamEntry
@@ -20,29 +21,17 @@ if TYPE_CHECKING:
     from solver.catalog.tools import load_tool as load_tool
 
 _HOME: Final = {
-    "BeamEntry": "beams",
-    "CatalogEntry": "listing",
-    "beam_entries": "beams",
-    "describe": "listing",
-    "list_names": "listing",
-    "load_beam": "beams",
-    "load_cell": "cells",
-    "load_robot": "robots",
-    "load_tool": "tools",
+    "BeamEntry": ".beams",
+    "CatalogEntry": ".listing",
+    "beam_entries": ".beams",
+    "describe": ".listing",
+    "list_names": ".listing",
+    "load_beam": ".beams",
+    "load_cell": ".cells",
+    "load_robot": ".robots",
+    "load_tool": ".tools",
 }
 
 __all__ = sorted(_HOME)  # noqa: PLE0605 - a list of strings, kept in one place
 
-
-def __getattr__(name: str) -> Any:
-    """Load a public name from its home the first time it is asked for."""
-    if name not in _HOME:
-        raise AttributeError(f"module 'solver.catalog' has no attribute {name!r}")
-    value = getattr(import_module(f"solver.catalog.{_HOME[name]}"), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    """Names for completion."""
-    return sorted([*globals(), *_HOME])
+__getattr__, __dir__ = lazy_names(__name__, _HOME)

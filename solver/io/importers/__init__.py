@@ -6,8 +6,9 @@ An importer is one file with a function ``(Source, ImportOptions) -> Toolpath`` 
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
+
+from solver.lazy_names import lazy_names
 
 if TYPE_CHECKING:
     from solver.io.importers.options import ImportOptions as ImportOptions
@@ -22,30 +23,18 @@ if TYPE_CHECKING:
     from solver.io.importers.source import Source as Source
 
 _HOME: Final = {
-    "FaceLine": "parametric",
-    "ImportOptions": "options",
-    "ParametricPath": "parametric",
-    "Source": "source",
-    "face_line_toolpath": "parametric",
-    "import_source": "registry",
-    "load_toolpath": "registry",
-    "parametric_toolpath": "parametric",
-    "path_source": "registry",
-    "resample": "resampling",
+    "FaceLine": ".parametric",
+    "ImportOptions": ".options",
+    "ParametricPath": ".parametric",
+    "Source": ".source",
+    "face_line_toolpath": ".parametric",
+    "import_source": ".registry",
+    "load_toolpath": ".registry",
+    "parametric_toolpath": ".parametric",
+    "path_source": ".registry",
+    "resample": ".resampling",
 }
 
 __all__ = sorted(_HOME)  # noqa: PLE0605 - a list of strings, kept in one place
 
-
-def __getattr__(name: str) -> Any:
-    """Load a public name from its home the first time it is asked for."""
-    if name not in _HOME:
-        raise AttributeError(f"module 'solver.io.importers' has no attribute {name!r}")
-    value = getattr(import_module(f"solver.io.importers.{_HOME[name]}"), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    """Names for completion."""
-    return sorted([*globals(), *_HOME])
+__getattr__, __dir__ = lazy_names(__name__, _HOME)
