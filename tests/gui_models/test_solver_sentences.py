@@ -21,6 +21,7 @@ NO_SENTENCES_OF_THE_WINDOW = {
     "kinematics": "arguments of code",
     "costs": "arguments of code",
     "transforms.py": "arguments of code",
+    "lazy_names.py": "arguments of code",
     "search/graph.py": "arguments of code",
     "search/bottleneck.py": "arguments of code",
     "search/heuristic_weight.py": "a command of the study",
