@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from pathlib import Path
@@ -19,6 +20,7 @@ from posopt_gui.look import Look
 from posopt_gui.main_window import MainWindow
 from posopt_gui.qt_words import QtWords
 from posopt_gui.style import prepare_fonts
+from posopt_gui.workers.garbage import GarbageCollector
 from solver.errors import PosoptError
 
 SWITCH = 0.001
@@ -36,6 +38,7 @@ def application() -> QApplication:
     # Each call from Qt into Python waits for the threads that plan to pass on the interpreter.
     sys.setswitchinterval(SWITCH)
     created = QApplication(["posopt"])
+    GarbageCollector(created).start()
     prepare_fonts()
     return created
 
@@ -82,6 +85,8 @@ def begin(window: MainWindow, file: str | None = None) -> None:
             window.files.import_path(Path(file).absolute())
 
     window.ready.connect(restore)
+    # The panels live as long as the window: they are not looked through again and again.
+    window.ready.connect(gc.freeze)
     window.session.start()
     window.load_views_in_turns()
 

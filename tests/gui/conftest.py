@@ -60,3 +60,14 @@ def planned(qtbot, session):
     with qtbot.waitSignal(session.result_changed, timeout=180_000):
         session.start()
     return session
+
+
+@pytest.fixture(scope="package", autouse=True)
+def collector(qapp):
+    """Collect garbage on the window's thread alone, as the product does."""
+    from posopt_gui.workers.garbage import GarbageCollector
+
+    made = GarbageCollector(qapp)
+    made.start()
+    yield made
+    made.stop()

@@ -99,6 +99,8 @@ def close_window(window: MainWindow) -> bool:
     """Close a window without saving, and destroy it; False where it refused to close."""
     person(window).choice = Choice.DISCARD
     closed = window.close()
+    # With the look goes the translation that it has given to all of Qt.
+    window.session.look.deleteLater()
     window.deleteLater()
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     QApplication.processEvents()
