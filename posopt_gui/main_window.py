@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QSettings, QThreadPool, QTimer, Signal
+from PySide6.QtCore import QSettings, QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import (
     QApplication,
@@ -28,6 +28,7 @@ from posopt_gui.views.status_line import StatusLine
 from posopt_gui.views.tool_bar import ToolBar
 from posopt_gui.views.typed import apply_typed
 from posopt_gui.workers.jobs import JobLine, end_all
+from posopt_gui.workers.threads import JobThreads
 from solver.model.scheme import Scheme
 
 if TYPE_CHECKING:
@@ -94,7 +95,7 @@ class MainWindow(QMainWindow):
         self.tabs.setDocumentMode(True)
         self.tabs.tabBar().setDrawBase(False)
         self.all_ended = True
-        self._pool = QThreadPool(self)
+        self._pool = JobThreads(1, self)
         self._loads = JobLine(self._pool, self)
         self._loads.done.connect(self._build_in_turns)
         self._connect()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QThreadPool, Signal
+from PySide6.QtCore import QObject, Signal
 
 from posopt_gui.viewmodels.curves_model import Track, compared_tracks
 from posopt_gui.workers.jobs import JobLine
@@ -22,10 +22,7 @@ class Comparison(QObject):
     def __init__(self, session: Session, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._session = session
-        self._pool = QThreadPool(self)
-        self._line = JobLine(self._pool, self)
-        self._line.done.connect(self._on_done)
-        self._line.failed.connect(self._on_failed)
+        self._line = JobLine(session.follow_ups, self, self._on_done, self._on_failed)
         self._of: PlanningResult | None = None
         self._tracks: tuple[Track, ...] = ()
         session.result_changed.connect(self._on_result)

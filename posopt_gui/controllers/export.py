@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, QThreadPool, QTimer, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from posopt_gui.controllers.folders import first_folder
 from posopt_gui.controllers.session import CLOSING_TIME, Message, Session
@@ -21,6 +21,7 @@ from posopt_gui.viewmodels.export_model import (
     with_suffix,
 )
 from posopt_gui.workers.jobs import JobLine
+from posopt_gui.workers.threads import JobThreads
 from solver.errors import PosoptError
 
 if TYPE_CHECKING:
@@ -54,8 +55,7 @@ class Exporter(QObject):
         self._written_of: tuple[object, ...] | None = None
         self._formed_for: tuple[object, object] | None = None
         self._stamped = ""
-        self._pool = QThreadPool(self)
-        self._pool.setMaxThreadCount(2)
+        self._pool = JobThreads(2, self)
         self._drafts = JobLine(self._pool, self, self._drafted, self._draft_failed)
         self._orders = JobLine(self._pool, self, self._order_checked, self._defect)
         self._writes = JobLine(self._pool, self, self._wrote, self._write_failed)
@@ -272,7 +272,7 @@ class Exporter(QObject):
         self._timer.stop()
         for line in (self._drafts, self._orders, self._writes):
             line.close()
-        return self._pool.waitForDone(CLOSING_TIME)
+        return self._pool.wait(CLOSING_TIME)
 
     def _drafted(self, draft: ProgramDraft) -> None:
         self._set(draft=draft, current=True, fault="")

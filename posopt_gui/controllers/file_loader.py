@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from PySide6.QtCore import QObject, QThreadPool, Signal
+from PySide6.QtCore import QObject, Signal
 
 from posopt_gui.controllers.session import Message, Session
 from posopt_gui.viewmodels.error_words import error_words
 from posopt_gui.workers.jobs import JobLine
+from posopt_gui.workers.threads import JobThreads
 from solver.errors import PosoptError
 
 
@@ -24,8 +25,7 @@ class FileLoader(QObject):
     def __init__(self, session: Session, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._session = session
-        self._pool = QThreadPool(self)
-        self._pool.setMaxThreadCount(1)
+        self._pool = JobThreads(1, self)
         self._line = JobLine(self._pool, self)
         self._line.done.connect(self._on_done)
         self._line.failed.connect(self._on_failed)
@@ -37,7 +37,7 @@ class FileLoader(QObject):
     def close(self) -> None:
         """Forget what is being read and wait for it."""
         self._line.close()
-        self._pool.waitForDone()
+        self._pool.wait()
 
     def _on_done(self, found: Any) -> None:
         """Take what a job has found."""

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from PySide6.QtCore import QObject, QSettings, QThreadPool, Signal
+from PySide6.QtCore import QObject, QSettings, Signal
 
 from posopt_gui.controllers.file_mark import mark_of
 from posopt_gui.controllers.folders import first_folder
@@ -28,6 +28,7 @@ from posopt_gui.document.project_file import SUFFIX, load_project, project_bytes
 from posopt_gui.viewmodels.check_sentences import sentence
 from posopt_gui.viewmodels.error_words import file_words
 from posopt_gui.workers.jobs import JobLine
+from posopt_gui.workers.threads import JobThreads
 from solver.errors import InputError, Place, PosoptError
 from solver.io.atomic import write_atomically
 
@@ -94,7 +95,7 @@ class Files(QObject):
         self.ask: Questions = ask or NoQuestions()
         self._path: Path | None = None
         self._mark: bytes | None = None
-        self._pool = QThreadPool(self)
+        self._pool = JobThreads(2, self)
         self._imports = JobLine(self._pool, self)
         self._imports.done.connect(self._imported)
         self._imports.failed.connect(self._import_failed)
@@ -238,7 +239,7 @@ class Files(QObject):
         """Stop what still runs; False where it has not ended in time."""
         self._imports.close()
         self._reports.close()
-        return self._pool.waitForDone(CLOSING_TIME)
+        return self._pool.wait(CLOSING_TIME)
 
     def guide(self) -> str:
         """Where the user guide is; '' and a sentence where it is not there."""

@@ -6,12 +6,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
-from PySide6.QtCore import QObject, QThreadPool, Signal
+from PySide6.QtCore import QObject, Signal
 
 from posopt_gui.controllers.session import Message
 from posopt_gui.viewmodels.error_words import error_words
 from posopt_gui.viewmodels.front_model import FrontModel, Mark, front_model, present_mark
 from posopt_gui.workers.jobs import JobLine
+from posopt_gui.workers.threads import JobThreads
 from solver.errors import PosoptError
 from solver.model.scheme import Scheme
 
@@ -42,8 +43,7 @@ class Front(QObject):
     def __init__(self, session: Session, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._session = session
-        self._pool = QThreadPool(self)
-        self._pool.setMaxThreadCount(1)
+        self._pool = JobThreads(1, self)
         self._line = JobLine(self._pool, self)
         self._line.done.connect(self._on_done)
         self._line.failed.connect(self._on_failed)
@@ -126,7 +126,7 @@ class Front(QObject):
     def close(self) -> None:
         """Cancel what is being worked out and wait for it."""
         self._line.close()
-        self._pool.waitForDone()
+        self._pool.wait()
 
     def _tell(self, minimum: float, *, wishes: bool) -> None:
         tr = self._session.look.tr

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QThreadPool, QTimer, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from posopt_gui.viewmodels.inspector_model import Pose
 from posopt_gui.workers.jobs import JobLine
+from posopt_gui.workers.threads import JobThreads
 
 if TYPE_CHECKING:
     from posopt_gui.controllers.session import Session
@@ -25,7 +26,7 @@ class PoseExplainer(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._pool = QThreadPool(self)
+        self._pool = JobThreads(2, self)
         self._line = JobLine(self._pool, self)
         self._line.done.connect(self._on_done)
         self._timer = QTimer(self)
@@ -89,9 +90,7 @@ class NearestBodies(QObject):
     def __init__(self, session: Session, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._session = session
-        self._pool = QThreadPool(self)
-        self._line = JobLine(self._pool, self)
-        self._line.done.connect(self._on_done)
+        self._line = JobLine(session.follow_ups, self, self._on_done)
         self._of: Sequence | None = None
         self._names: tuple[tuple[str, str], ...] = ()
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from PySide6.QtCore import QObject, QStandardPaths, QThreadPool, QTimer
+from PySide6.QtCore import QObject, QStandardPaths, QTimer
 
 from posopt_gui.controllers.file_lock import FileLock
 from posopt_gui.controllers.files import Files
@@ -22,6 +22,7 @@ from posopt_gui.document.project import ProjectState
 from posopt_gui.document.project_file import project_bytes, read_project
 from posopt_gui.viewmodels.check_sentences import sentence
 from posopt_gui.workers.jobs import JobLine
+from posopt_gui.workers.threads import JobThreads
 from solver.errors import InputError, Place, PosoptError
 from solver.io.atomic import write_atomically
 
@@ -69,7 +70,7 @@ class Recovery(QObject):
         self._left_behind: list[tuple[Path, FileLock]] = []
         self._saved: ProjectState | None = None
         self._warned = False
-        self._pool = QThreadPool(self)
+        self._pool = JobThreads(2, self)
         self._writes = JobLine(self._pool, self)
         self._writes.done.connect(self._written)
         self._writes.failed.connect(self._failed)
@@ -147,7 +148,7 @@ class Recovery(QObject):
         self._interval.stop()
         self._idle.stop()
         self._writes.close()
-        done = self._pool.waitForDone(CLOSING_TIME)
+        done = self._pool.wait(CLOSING_TIME)
         self._drop_left_behind()
         _remove(self._file)
         if self._lock is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QThreadPool, QTimer, SignalInstance
+from PySide6.QtCore import QObject, QTimer, SignalInstance
 
 from posopt_gui.controllers.said import Hover as Hover  # noqa: PLC0414 - told from here
 from posopt_gui.controllers.said import Message as Message  # noqa: PLC0414 - told from here
@@ -14,7 +14,9 @@ from posopt_gui.controllers.session_state import SessionState
 from posopt_gui.document.document import Document
 from posopt_gui.document.project import ProjectState
 from posopt_gui.look import Look
+from posopt_gui.workers.follow_ups import FollowUps
 from posopt_gui.workers.jobs import JobLine
+from posopt_gui.workers.threads import JobThreads
 from posopt_gui.workers.turns import Turns
 from solver.errors import InputError, PosoptError
 from solver.model.scheme import Scheme
@@ -45,12 +47,12 @@ class Session(SessionState):
         self.compared: tuple[Scheme, ...] = (Scheme.EXACT, Scheme.F2)
         self.live = False
         self.turns = Turns(self)
-        self._pool = QThreadPool(self)
-        self._pool.setMaxThreadCount(3)
+        self.follow_ups = FollowUps(self.turns, self)
+        self._pool = JobThreads(3, self)
         self._builds = JobLine(self._pool, self, self._built, self._build_failed)
         self._plans = JobLine(self._pool, self, self._planned, self._plan_failed)
         self._wishes = JobLine(self._pool, self, self._answered, self._defect)
-        self._checks = JobLine(self._pool, self, self._checked, self._check_failed)
+        self._checks = JobLine(self.follow_ups, self, self._checked, self._check_failed)
         self._plans.progress.connect(self.progress)
         self._plans.busy_changed.connect(self.planning_changed)
         self._planned_state: ProjectState | None = None
@@ -207,7 +209,8 @@ class Session(SessionState):
         self.turns.clear()
         for line in (self._builds, self._plans, self._wishes, self._checks):
             line.close()
-        return self._pool.waitForDone(CLOSING_TIME)
+        ended = self._pool.wait(CLOSING_TIME)
+        return self.follow_ups.close(CLOSING_TIME) and ended
 
     def _on_document(self) -> None:
         before, state = self._seen, self.document.state

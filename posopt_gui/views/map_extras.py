@@ -6,12 +6,13 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, QThreadPool, Signal
+from PySide6.QtCore import QObject, Signal
 
 from posopt_gui.viewmodels.map_colours import Layer
 from posopt_gui.viewmodels.map_lines import constant_nodes, scheme_search
 from posopt_gui.viewmodels.map_model import Choice, MapModel
 from posopt_gui.workers.jobs import JobLine
+from posopt_gui.workers.threads import JobThreads
 from solver.model.settings import Scheme
 from solver.transforms import FloatArray, IntArray
 
@@ -45,8 +46,7 @@ class MapExtras(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._pool = QThreadPool(self)
-        self._pool.setMaxThreadCount(1)
+        self._pool = JobThreads(1, self)
         self._searches = self._line(self._searched)
         self._rejected = self._line(self.candidates_found.emit)
         self._warming = self._line(lambda _: self.explaining.emit())
@@ -104,7 +104,7 @@ class MapExtras(QObject):
         """Cancel what is being worked out and wait for it."""
         for line in (self._searches, self._rejected, self._warming, self._models, self._cells):
             line.close()
-        self._pool.waitForDone()
+        self._pool.wait()
 
     def _searched(self, found: Extras) -> None:
         self.known.orders |= found.orders

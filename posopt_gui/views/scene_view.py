@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QPointF, Qt, QThreadPool, QTimer
+from PySide6.QtCore import QPointF, Qt, QTimer
 from PySide6.QtGui import QHideEvent, QImage, QPainter, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QFileDialog, QLabel, QStackedLayout, QWidget
 
@@ -20,6 +20,7 @@ from posopt_gui.views.scene_ghost import SceneGhost
 from posopt_gui.views.scene_looked import Looked
 from posopt_gui.views.scene_tools import SceneTools
 from posopt_gui.workers.jobs import JobLine
+from posopt_gui.workers.threads import JobThreads
 from solver.errors import PosoptError
 from solver.transforms import FloatArray
 
@@ -52,14 +53,11 @@ class SceneView(QWidget):
         self._failure = ""
         self._fitted = self._fitted_to_plan = False
         self._fitted_camera: Camera | None = None
-        self._pool = QThreadPool(self)
-        self._pool.setMaxThreadCount(1)
+        self._pool = JobThreads(1, self)
         self._cells = JobLine(self._pool, self)
         self._cells.done.connect(self._cell_built)
         self._cells.failed.connect(self._build_failed)
-        self._probes = JobLine(self._pool, self)
-        self._probes.done.connect(self._probe_built)
-        self._probes.failed.connect(self._probe_failed)
+        self._probes = JobLine(session.follow_ups, self, self._probe_built, self._probe_failed)
         self._sentence = QLabel(self)
         self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._sentence.setWordWrap(True)
@@ -320,6 +318,7 @@ class SceneView(QWidget):
         result = self.session.result
         if result is not None and probe.problem is result.problem:
             self._probe = probe
+            self._looked.measure_ghost(probe)
             self._on_place()
 
     def _probe_failed(self, error: object) -> None:

@@ -9,8 +9,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from PySide6.QtCore import QObject, QThreadPool, Signal
+from PySide6.QtCore import QObject, Signal
 
+from posopt_gui.workers.follow_ups import FollowUps
+from posopt_gui.workers.threads import JobThreads
 from solver.errors import Cancelled, PosoptError
 from solver.progress import Monitor
 from solver.units import MS_PER_S
@@ -79,7 +81,7 @@ class JobLine(QObject):
 
     def __init__(
         self,
-        pool: QThreadPool,
+        pool: JobThreads | FollowUps,
         parent: QObject | None = None,
         done: Callable[..., None] | None = None,
         failed: Callable[[object], None] | None = None,
@@ -142,7 +144,7 @@ class JobLine(QObject):
 
         def run() -> None:
             try:
-                answer = work(monitor)
+                answer = _do(work, monitor)
             except (Cancelled, PosoptError) as error:
                 _send(relay.failed, number, error)
             except Exception as error:
@@ -190,10 +192,17 @@ def end_all(*owners: QObject, patience: int) -> bool:
     end = time.monotonic() + patience / MS_PER_S
     ended = True
     for owner in owners:
-        for pool in owner.findChildren(QThreadPool):
+        for pool in owner.findChildren(JobThreads):
             left = max(0, int((end - time.monotonic()) * MS_PER_S))
-            ended = pool.waitForDone(left) and ended
+            ended = pool.wait(left) and ended
     return ended
+
+
+def _do(work: Work, monitor: _JobMonitor) -> object:
+    # What was cancelled before it began need not begin.
+    if monitor.cancelled():
+        raise Cancelled
+    return work(monitor)
 
 
 def _send(signal: Any, number: int, value: object) -> None:

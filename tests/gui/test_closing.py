@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QCoreApplication, QEvent, QThreadPool
+from PySide6.QtCore import QCoreApplication, QEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu
 from window_helpers import (
@@ -23,6 +23,7 @@ from window_helpers import (
 
 from posopt_gui.controllers.files import Choice
 from posopt_gui.document.project_file import load_project
+from posopt_gui.workers.threads import JobThreads
 from solver.model.settings import Scheme
 
 SMALL = CELLS / "groove_paper.toml"
@@ -90,8 +91,8 @@ def test_closing_in_the_middle_of_something_ends_it(qapp, tmp_path, begin):
     assert told == []
     assert not session._plans.busy
     # A kernel that is being loaded cannot be stopped; on a busy machine that takes its time.
-    pools = [*window.findChildren(QThreadPool), *session.findChildren(QThreadPool)]
-    wait(lambda: not any(pool.activeThreadCount() for pool in pools))
+    pools = [*window.findChildren(JobThreads), *session.findChildren(JobThreads)]
+    wait(lambda: all(pool.wait(0) for pool in pools))
     assert told == []
     assert close_window(window)
 

@@ -3,19 +3,21 @@
 import threading
 
 import pytest
-from PySide6.QtCore import QThreadPool
+import shiboken6
+from PySide6.QtCore import QObject
 
 from posopt_gui.workers.jobs import JobLine
+from posopt_gui.workers.threads import JobThreads
 from solver.errors import Cancelled, InputError
 
 
 @pytest.fixture
 def line(qtbot):
-    pool = QThreadPool()
+    pool = JobThreads(2)
     made = JobLine(pool)
     yield made
     made.close()
-    assert pool.waitForDone(10_000)
+    assert pool.wait(10_000)
 
 
 def test_an_answer_comes_on_the_threads_of_the_window(line, qtbot):
@@ -127,3 +129,32 @@ def test_a_job_that_waits_for_a_cancelled_one_is_busy_until_it_is_stopped_as_wel
         line.submit(lambda _: "fourth")
     assert told == ["fourth"]
     assert states == [True, False, True, False, True, False]
+
+
+def test_destroying_a_view_does_not_wait_for_its_job():
+    begun, let_go, ended = threading.Event(), threading.Event(), threading.Event()
+    view = QObject()
+    line = JobLine(JobThreads(1, view), view)
+
+    def job(_):
+        begun.set()
+        let_go.wait(60)
+        ended.set()
+
+    line.submit(job)
+    assert begun.wait(60)
+    # As Python does with the last reference: the interpreter stays in the hand that destroys.
+    shiboken6.delete(view)
+    assert not ended.is_set()
+    let_go.set()
+    assert ended.wait(60)
+
+
+def test_waiting_for_threads_says_whether_they_have_ended():
+    let_go = threading.Event()
+    threads = JobThreads(1)
+    assert threads.wait()
+    threads.start(lambda: let_go.wait(60))
+    assert not threads.wait(20)
+    let_go.set()
+    assert threads.wait(60_000)

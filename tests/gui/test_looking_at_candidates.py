@@ -146,6 +146,7 @@ def test_another_plan_forgets_the_chosen_candidate(view, mouse, shared):
 
 def test_a_ghost_that_collides_shows_its_own_clearance_and_goes_with_it(view, shared, scene):
     waypoint, orientation = candidate(shared, *REJECTED)
+    wait(lambda: scene.report is not None)
     own = scene.report
     shared.set_hover(Hover(waypoint, orientation, 0))
     wait(lambda: scene.ghost_report is not None)
@@ -155,6 +156,18 @@ def test_a_ghost_that_collides_shows_its_own_clearance_and_goes_with_it(view, sh
     shared.set_hover(None)
     assert scene.ghost_report is None
     assert "Candidate" not in scene._note.text()
+
+
+def test_a_ghost_that_is_there_before_what_measures_it_is_measured_then(view, shared, scene):
+    waypoint, orientation = candidate(shared, *REJECTED)
+    wait(lambda: scene.report is not None)
+    probe, scene._probe = scene._probe, None
+    shared.set_hover(Hover(waypoint, orientation, 0))
+    scene._ghost.catch_up()
+    assert scene.ghost_report is None
+    scene._probe_built(probe)
+    assert scene.ghost_report.clearance <= 0.0
+    shared.set_hover(None)
 
 
 def test_a_ghost_of_a_pose_out_of_reach_is_not_measured(view, shared, scene):

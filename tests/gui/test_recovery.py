@@ -46,7 +46,7 @@ def left_behind(recovery, qtbot):
     """Write a copy, then give the lock up without a proper end, as a crash does."""
     recovery.save()
     qtbot.waitUntil(recovery.file.exists, timeout=10_000)
-    recovery._pool.waitForDone(5_000)
+    recovery._pool.wait(5_000)
     data = recovery.file.read_bytes()
     recovery.end()
     recovery.file.parent.mkdir(exist_ok=True)
