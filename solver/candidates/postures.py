@@ -47,9 +47,8 @@ def check_exact_postures(
     model = pendant @ robot.model_from_pendant.T
     arm = np.array(robot.arm_lengths)
     status, clearance, nearest, points = pose_of_joints(arm, scene.packed, model, touch)
-    names = [
-        (str(scene.moving[m]), str(scene.fixed[f])) if m >= 0 else ("", "") for m, f in nearest
-    ]
+    moving, fixed = [str(body) for body in scene.moving], [str(body) for body in scene.fixed]
+    names = [(moving[m], fixed[f]) if m >= 0 else ("", "") for m, f in nearest.tolist()]
     if scene.meshes:
         MeshChecker(scene).refine(arm, model, touch, status, clearance, names, points)
     return PostureChecks(status, clearance, tuple(names), points)

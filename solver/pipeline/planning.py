@@ -164,15 +164,20 @@ def optimum_among(
     Joints are exported rounded: nodes whose rounded joints fall under the clearance `least` [m]
     are left out too.
     """
+    allowed = allowed.copy()
+    known = np.zeros(len(allowed), dtype=np.bool_)
     while True:
         found = _search_allowed(graph, allowed, monitor)
         if found is None:
             return None
         outcome, nodes, extra = found
-        low = nodes[rounded_clearance(candidates, nodes) < least]
+        # Most nodes are those of the sequence before, which keep their clearance rounded too.
+        asked = nodes[~known[nodes]]
+        low = asked[rounded_clearance(candidates, asked) < least] if len(asked) else asked
         if not len(low):
             return sequence_of(candidates, Scheme.EXACT, nodes, outcome.cost), extra
-        allowed = allowed & ~np.isin(np.arange(len(allowed)), low)
+        known[asked] = True
+        allowed[low] = False
 
 
 def _search_allowed(

@@ -60,23 +60,34 @@ def allowed_nodes(
     """(k,) which nodes the wishes and the hard minimum clearance leave."""
     candidates = result.candidates
     nodes = candidates.nodes
-    waypoint, _, slot, turn = nodes.candidate.T
-    branch, lean = candidates.branches[slot], candidates.lean
     allowed: NDArray[np.bool_] = nodes.clearance >= result.hard_minimum
+    # Only the nodes of the waypoints that a wish is about are looked at: there are many others.
     for pin in pins:
-        fits = np.abs(lean - pin.lean) <= ANGLE_SLACK
+        here = _nodes_between(result, pin.waypoint, pin.waypoint)
+        _, orientation, slot, turn = nodes.candidate[here].T
+        fits = np.abs(candidates.orientations[orientation, 0] - pin.lean) <= ANGLE_SLACK
         if pin.branch is not None:
-            fits &= branch == pin.branch
+            fits &= candidates.branches[slot] == pin.branch
         if pin.turn is not None:
             fits &= turn == pin.turn
-        allowed &= (waypoint != pin.waypoint) | fits
+        allowed[here] &= fits
     for region in regions:
-        inside = (waypoint >= region.first) & (waypoint <= region.last)
-        inside &= (lean >= region.low - ANGLE_SLACK) & (lean <= region.high + ANGLE_SLACK)
+        here = _nodes_between(result, region.first, region.last)
+        _, orientation, slot, _ = nodes.candidate[here].T
+        lean = candidates.orientations[orientation, 0]
+        inside = (lean >= region.low - ANGLE_SLACK) & (lean <= region.high + ANGLE_SLACK)
         if region.branch is not None:
-            inside &= branch == region.branch
-        allowed &= ~inside
+            inside &= candidates.branches[slot] == region.branch
+        allowed[here] &= ~inside
     return allowed
+
+
+def _nodes_between(result: PlanningResult, first: int, last: int) -> slice:
+    """The nodes of the waypoints first..last; none where the path has none of these."""
+    offsets = result.candidates.nodes.offsets
+    count = len(offsets) - 1
+    low, high = min(max(first, 0), count), min(max(last + 1, 0), count)
+    return slice(int(offsets[low]), int(offsets[max(low, high)]))
 
 
 def replan(

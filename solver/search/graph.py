@@ -195,12 +195,19 @@ class LayeredGraph:
         part = replace(
             self,
             offsets=np.searchsorted(nodes, self.offsets).astype(np.int64),
-            joints=self.joints[nodes],
-            node_cost=self.node_cost[nodes],
-            steps=None if self.steps is None else self.steps[nodes],
-            lean=None if self.lean is None else self.lean[nodes],
+            joints=_taken(self.joints, nodes),
+            node_cost=_taken(self.node_cost, nodes),
+            steps=None if self.steps is None else _taken(self.steps, nodes),
+            lean=None if self.lean is None else _taken(self.lean, nodes),
         )
         return Subgraph(part, nodes)
+
+
+def _taken(values: FloatArray, nodes: IntArray) -> FloatArray:
+    """Return the values of some nodes, read-only, so that the graph need not copy them."""
+    taken: FloatArray = np.take(values, nodes, axis=0)
+    taken.setflags(write=False)
+    return taken
 
 
 def _kept(name: str, values: Any, shape: tuple[int, ...], dtype: Any) -> NDArray[Any]:

@@ -36,6 +36,45 @@ def plain_optimum(result, allowed):
     return float(value.min())
 
 
+def fits(result, node, pins, regions):
+    """Whether a node may be passed, by the words of the wishes."""
+    candidates = result.candidates
+    waypoint, orientation, slot, turn = map(int, candidates.nodes.candidate[node])
+    branch, lean = candidates.branches[slot], candidates.orientations[orientation, 0]
+    if candidates.nodes.clearance[node] < result.hard_minimum:
+        return False
+    for pin in pins:
+        meant = pin.branch in (None, branch) and pin.turn in (None, turn)
+        if pin.waypoint == waypoint and not (meant and abs(lean - pin.lean) < 1e-6):
+            return False
+    return not any(
+        one.first <= waypoint <= one.last
+        and one.low - 1e-6 <= lean <= one.high + 1e-6
+        and one.branch in (None, branch)
+        for one in regions
+    )
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_wishes_leave_exactly_the_nodes_that_their_words_leave(planned, seed):
+    """Also with two pins at one waypoint, and with wishes beyond both ends of the path."""
+    rng = np.random.default_rng(seed)
+    count, leans = len(planned.problem.toolpath), planned.candidates.orientations[:, 0]
+    slots, turns = [None, *planned.candidates.branches], [None, 0, 1]
+    pins = [
+        Pin(int(waypoint), float(rng.choice(leans)), rng.choice(slots), rng.choice(turns))
+        for waypoint in (*rng.integers(-2, count + 2, 3), count // 2, count // 2)
+    ]
+    regions = []
+    for _ in range(3):
+        first, last = sorted(rng.integers(-5, count + 5, 2).tolist())
+        low, high = sorted(rng.choice(leans, 2).tolist())
+        regions.append(Region(first, last, low, high, rng.choice(slots)))
+    allowed = allowed_nodes(planned, pins, regions)
+    wanted = [fits(planned, node, pins, regions) for node in range(len(allowed))]
+    np.testing.assert_array_equal(allowed, wanted)
+
+
 def test_without_wishes_nothing_changes_and_nothing_is_paid(planned):
     answer = replan(planned)
     assert answer.price == pytest.approx(0.0, abs=1e-12)
