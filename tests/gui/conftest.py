@@ -30,6 +30,32 @@ def pytest_collection_modifyitems(items):
             item.add_marker(pytest.mark.skip(reason="no display: run it under xvfb-run"))
 
 
+@pytest.fixture(autouse=True)
+def held_widgets(monkeypatch):
+    """Hold the widgets of a test until Qt has destroyed them, as a window holds its panels.
+
+    pytest-qt refers to them weakly: between the end of a test and the closing of its widgets they
+    could be collected as garbage, children before their parents, which Qt does not survive where
+    a tab bar has a widget in its corner.
+    """
+    if not HAS_DISPLAY:
+        yield
+        return
+    from PySide6.QtCore import QEvent
+    from pytestqt.qtbot import QtBot
+
+    held, add = [], QtBot.addWidget
+
+    def hold(bot, widget, **options):
+        held.append(widget)
+        add(bot, widget, **options)
+
+    monkeypatch.setattr(QtBot, "addWidget", hold)
+    yield
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    held.clear()
+
+
 @pytest.fixture(scope="session")
 def qapp_args():
     return ["posopt-tests"]
