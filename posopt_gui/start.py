@@ -11,6 +11,7 @@ from PySide6.QtCore import QCoreApplication, QSettings, Qt, QTimer
 from PySide6.QtWidgets import QApplication
 
 from posopt_gui.controllers.defects import DefectHook
+from posopt_gui.controllers.file_mark import mark_of
 from posopt_gui.controllers.files import Files, state_of_argument
 from posopt_gui.controllers.path_import import is_path_file
 from posopt_gui.controllers.recovery import Recovery
@@ -53,6 +54,8 @@ def make_window(
     PosoptError
         When the file cannot be opened.
     """
+    # Before it is read: what is written meanwhile is another one's.
+    mark = None if file is None else mark_of(Path(file))
     state, path = state_of_argument(file)
     chosen = language or settings.value("look/language", "en", type=str)
     colours = theme or settings.value("look/theme", "light", type=str)
@@ -60,7 +63,7 @@ def make_window(
     QtWords(look)
     session = Session(Document(state), look)
     files = Files(session, settings)
-    files.opened(path)
+    files.opened(path, mark)
     return MainWindow(session, files, Recovery(session, files), settings)
 
 

@@ -147,11 +147,11 @@ class Files(QObject):
         self._settings.setValue(RECENT_KEY, "[]")
         self.recent_changed.emit()
 
-    def opened(self, path: Path | None) -> None:
-        """Take note of the file that the document was read from."""
+    def opened(self, path: Path | None, mark: bytes | None = None) -> None:
+        """Take note of the file that the document was read from, and of its mark before that."""
         self._path = path
         if path is not None:
-            self._mark = mark_of(path)
+            self._mark = mark_of(path) if mark is None else mark
             self._note(path)
         self.title_changed.emit()
 

@@ -14,6 +14,9 @@ from posopt_gui.workers.turns import Turns
 REST: Final = 20
 """How long the window has had nothing to do before a job begins [ms]."""
 
+MOST_RESTS: Final = 50
+"""How often a job waits for a window that always has something to do."""
+
 
 class FollowUps(QObject):
     """Runs jobs one at a time on a thread, each when the window has nothing more to do.
@@ -31,6 +34,7 @@ class FollowUps(QObject):
         self._pool = JobThreads(1, self)
         self._jobs: deque[Callable[[], None]] = deque()
         self._running = False
+        self._rests = 0
         self._rest = QTimer(self)
         self._rest.setSingleShot(True)
         self._rest.setInterval(REST)
@@ -52,11 +56,12 @@ class FollowUps(QObject):
     def _next(self) -> None:
         if self._running or not self._jobs:
             return
-        if self._turns.waiting:
+        if self._turns.waiting and self._rests < MOST_RESTS:
+            self._rests += 1
             self._rest.start()
             return
         job = self._jobs.popleft()
-        self._running = True
+        self._running, self._rests = True, 0
 
         def run() -> None:
             try:

@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 import gc
+import time
 from typing import Final
 
 from PySide6.QtCore import QObject, QTimer
 
 INTERVAL: Final = 100
 """How often it is asked whether there is enough garbage to be collected [ms]."""
+
+OLDEST: Final = 2
+"""Python's generation of what has outlived two collections."""
+
+GROWTH: Final = 1.25
+"""How much more there is in the oldest generation when all of it is looked through again."""
+
+PAUSE: Final = 5.0
+"""How long it is not asked again whether there is [s]."""
 
 
 class GarbageCollector(QObject):
@@ -22,6 +32,8 @@ class GarbageCollector(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
+        self._old = 0
+        self._ask_again = 0.0
         self._timer = QTimer(self)
         self._timer.setInterval(INTERVAL)
         self._timer.timeout.connect(self.collect)
@@ -45,5 +57,21 @@ class GarbageCollector(QObject):
             )
             if 0 < threshold < count
         ]
-        if due:
-            gc.collect(due[-1])
+        if not due:
+            return
+        if due[-1] < OLDEST or not self._is_worth_it():
+            gc.collect(min(due[-1], OLDEST - 1))
+            return
+        gc.collect()
+        self._old = len(gc.get_objects(generation=OLDEST))
+
+    def _is_worth_it(self) -> bool:
+        """Whether there is much more to look through than was left the last time, as Python asks.
+
+        With the plan of a long path it takes longer than the window may be still.
+        """
+        now = time.monotonic()
+        if now < self._ask_again:
+            return False
+        self._ask_again = now + PAUSE
+        return len(gc.get_objects(generation=OLDEST)) > GROWTH * self._old

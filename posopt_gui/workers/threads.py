@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
+from functools import partial
 
 from PySide6.QtCore import QObject
 
@@ -21,6 +22,8 @@ class JobThreads(QObject):
     def __init__(self, most: int, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._executor = ThreadPoolExecutor(most, thread_name_prefix="posopt-job")
+        # Idle threads end with this object, even where something still refers to it.
+        self.destroyed.connect(partial(self._executor.shutdown, wait=False))
         self._jobs: set[Future[None]] = set()
 
     def start(self, job: Callable[[], None]) -> None:

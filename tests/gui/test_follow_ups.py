@@ -56,6 +56,18 @@ def test_no_job_begins_while_the_window_has_something_to_do(follow_ups, turns, q
     assert done == ["piece"] * 5 + ["job"]
 
 
+def test_a_job_does_not_wait_for_ever_for_a_busy_window(follow_ups, turns, qtbot):
+    done = []
+
+    def piece():
+        if not done:
+            turns.ask("again", piece)
+
+    turns.ask("again", piece)
+    follow_ups.start(lambda: done.append("job"))
+    qtbot.waitUntil(lambda: done == ["job"], timeout=60_000)
+
+
 def test_the_answer_of_a_job_is_shown_before_the_next_begins(follow_ups, turns, qtbot):
     seen = []
     shown = lambda answer: turns.ask(answer, lambda: seen.append(f"shown {answer}"))  # noqa: E731

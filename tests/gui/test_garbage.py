@@ -7,6 +7,7 @@ from weakref import finalize
 import pytest
 from PySide6.QtWidgets import QWidget
 
+from posopt_gui.workers import garbage
 from posopt_gui.workers.garbage import GarbageCollector
 
 CYCLES = 20_000
@@ -93,3 +94,17 @@ def test_a_widget_in_a_cycle_dies_on_the_thread_of_the_window(started, qtbot):
     assert told == []
     qtbot.waitUntil(lambda: bool(told))
     assert told == [threading.main_thread()]
+
+
+def test_what_is_old_is_looked_through_again_only_when_it_has_grown(qtbot, monkeypatch):
+    collected, old = [], [100]
+    monkeypatch.setattr(garbage, "PAUSE", 0.0)
+    monkeypatch.setattr(gc, "get_count", lambda: (9_000, 90, 90))
+    monkeypatch.setattr(gc, "get_threshold", lambda: (700, 10, 10))
+    monkeypatch.setattr(gc, "get_objects", lambda generation: [0] * old[0])
+    monkeypatch.setattr(gc, "collect", lambda generation=2: collected.append(generation))
+    made = GarbageCollector()
+    for size in (100, 110, 120, 126, 150, 160):
+        old[0] = size
+        made.collect()
+    assert collected == [2, 1, 1, 2, 1, 2]

@@ -150,6 +150,19 @@ def test_destroying_a_view_does_not_wait_for_its_job():
     assert ended.wait(60)
 
 
+def test_idle_threads_end_with_the_view_that_had_them(qtbot):
+    view = QObject()
+    threads = JobThreads(1, view)
+    running = []
+    threads.start(lambda: running.append(threading.current_thread()))
+    qtbot.waitUntil(lambda: bool(running))
+    assert running[0].is_alive()
+    shiboken6.delete(view)
+    running[0].join(60)
+    assert not running[0].is_alive()
+    assert threads is not None
+
+
 def test_waiting_for_threads_says_whether_they_have_ended():
     let_go = threading.Event()
     threads = JobThreads(1)

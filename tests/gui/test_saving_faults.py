@@ -10,6 +10,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMessageBox
 from window_helpers import CELLS, Person, close_window, make_window, person, press, wait
 
+from posopt_gui import start
 from posopt_gui.controllers.questions import Clash
 from posopt_gui.dialogs.file_questions import FileQuestions
 from posopt_gui.document.project_file import load_project
@@ -147,3 +148,20 @@ def test_a_picture_that_cannot_be_written_leaves_the_one_before(qapp, tmp_path):
     with pytest.raises(InputError, match="cannot be written"):
         write_picture(picture(20), file.with_suffix(".xyz"))
     assert file.with_suffix(".xyz").read_bytes() == b"kept"
+
+
+def test_what_is_written_while_a_named_project_is_read_is_asked_about(two, tmp_path, monkeypatch):
+    path = tmp_path / "shared.posopt"
+    read = start.state_of_argument
+
+    def overtaken(file):
+        found = read(file)
+        path.write_text(path.read_text("utf-8") + "\n", "utf-8")
+        return found
+
+    monkeypatch.setattr(start, "state_of_argument", overtaken)
+    third = make_window(tmp_path, path)
+    third.files.ask = Careful()
+    save_with_keys(third, 41.0)
+    assert third.files.ask.asked == ["written meanwhile: shared.posopt"]
+    assert close_window(third)
