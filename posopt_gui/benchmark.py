@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 PATIENCE: Final = 300.0
 """How long anything may take before the benchmark gives up [s]."""
 
-PLANS, DRAGS, HOVERS, FRAMES, PANS = 7, 14, 40, 120, 60
+PLANS, DRAGS, HOVERS, FRAMES, SWITCHES = 7, 14, 40, 120, 6
 PLAYED: Final = 3.0
 """How long the playback runs [s]."""
 
@@ -264,34 +264,45 @@ class Measuring:
 
     def pan(self) -> None:
         """Pan and zoom the map; the curves follow."""
-        canvas = self.window.map.canvas
-        paints = _Paints(canvas.viewport())
-        times = []
-        for number in range(PANS):
-            before = paints.count
-            begin = time.perf_counter()
-            low = 0.5 + 20.0 * number / PANS
-            canvas.setXRange(low, low + 25.0, padding=0.0)
-            _live_until(lambda before=before: paints.count > before)  # type: ignore[misc]
-            times.append(time.perf_counter() - begin)
-        canvas.fit()
-        self.found["frame: panning the map"] = _times(times)
+        from posopt_gui.benchmark_panning import pan_and_zoom  # noqa: PLC0415
+
+        paints = _Paints(self.window.map.canvas.viewport())
+
+        def frame(step: Callable[[], object]) -> float:
+            before, begin = paints.count, time.perf_counter()
+            step()
+            _live_until(lambda: paints.count > before)
+            return time.perf_counter() - begin
+
+        self.gaps.start()
+        found = pan_and_zoom(self.window, frame, lambda: _live_for(0.5))
+        self._end_gaps("gaps: panning and zooming")
+        self.found |= {name: _times(times) for name, times in found.items()}
 
     def look(self) -> None:
-        """Switch theme and language."""
-        look = self.session.look
+        """Switch theme and language; from the choice to all of it painted."""
+        window, look = self.window, self.session.look
+        paints = [_Paints(one) for one in (window, window.scene.canvas) if one is not None]
         switches: tuple[tuple[str, Callable[[bool], None]], ...] = (
-            ("switch: theme", lambda dark: look.set_theme("dark" if dark else "light")),
-            ("switch: language", lambda other: look.set_language("zh_CN" if other else "en")),
+            ("theme", lambda dark: look.set_theme("dark" if dark else "light")),
+            ("language", lambda other: look.set_language("zh_CN" if other else "en")),
         )
         for name, switch in switches:
             times = []
-            for number in range(4):
+            self.gaps.start()
+            for number in range(SWITCHES):
                 begin = time.perf_counter()
                 switch(number % 2 == 0)
-                QApplication.processEvents()
+                _live_until(lambda: not window.look_switch.going_on)
+                before = [one.count for one in paints]
+                _live_until(
+                    lambda before=before: all(  # type: ignore[misc]
+                        one.count > old for one, old in zip(paints, before, strict=True)
+                    )
+                )
                 times.append(time.perf_counter() - begin)
-            self.found[name] = _times(times)
+            self._end_gaps(f"gaps: {name}")
+            self.found[f"switch: {name}"] = _times(times)
 
     def close(self) -> None:
         """Close the window; nothing is asked, since nothing was changed."""
@@ -347,7 +358,7 @@ def lines(report: Mapping[str, Any]) -> list[str]:
     shown = [f"{report['cell']} on {report['system']}, {report['renderer'] or 'no OpenGL'}"]
     for name, values in report["measures"].items():
         words = ", ".join(f"{WORDS[key]} {one:.1f}" for key, one in values.items())
-        shown.append(f"{name:38s} {words}")
+        shown.append(f"{name:42s} {words}")
     return shown
 
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QSettings, QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import (
-    QApplication,
     QLabel,
     QMainWindow,
     QTabWidget,
@@ -20,9 +19,10 @@ from posopt_gui.actions import Actions
 from posopt_gui.controllers.session import CLOSING_TIME, Message, Session
 from posopt_gui.dialogs.file_questions import FileQuestions
 from posopt_gui.panels import building_steps, load_modules
-from posopt_gui.style import apply_theme
+from posopt_gui.views.look_switch import LookSwitch
 from posopt_gui.views.one_flush import OneFlush
 from posopt_gui.views.places import Places
+from posopt_gui.views.refresh import Refresh
 from posopt_gui.views.shell_parts import RecentMenu
 from posopt_gui.views.status_line import StatusLine
 from posopt_gui.views.tool_bar import ToolBar
@@ -76,6 +76,7 @@ class MainWindow(QMainWindow):
         self.files.ask = FileQuestions(self, session.look)
         self._settings = settings
         self._tr = session.look.tr
+        self.look_switch = LookSwitch(self, session)
         self._views: list[QWidget] = []
         self.guide: GuideWindow | None = None
         self._dialogs: dict[str, ExportDialog] = {}
@@ -219,8 +220,8 @@ class MainWindow(QMainWindow):
         self.files.title_changed.connect(self._on_title)
         self.files.typed_wanted.connect(lambda: apply_typed(self))
         self.files.recent_changed.connect(self._show_recent)
-        look.language_changed.connect(self.retranslate)
-        look.theme_changed.connect(self.retheme)
+        look.language_changed.connect(Refresh(session, self.retranslate, self).next_turn)
+        look.theme_changed.connect(Refresh(session, self.retheme, self).next_turn)
         self._on_planning(False)
         self._on_state()
 
@@ -242,10 +243,7 @@ class MainWindow(QMainWindow):
         self._on_result()
 
     def retheme(self) -> None:
-        """Give the application the colours of the theme."""
-        application = QApplication.instance()
-        if isinstance(application, QApplication):
-            apply_theme(application, self.session.look.theme)
+        """Draw the shell's own icons in the colours of the theme; LookSwitch does all else."""
         self.places.retheme(self.session.look.theme)
 
     def export_dialog(self) -> ExportDialog:
@@ -255,7 +253,6 @@ class MainWindow(QMainWindow):
         dialog = self._dialogs.get("export")
         if dialog is None:
             dialog = self._dialogs["export"] = ExportDialog(self.session, self)
-            dialog.exporter.set_folder(self.files.folder)
             dialog.report_requested.connect(self.save_report)
         return dialog
 
@@ -265,6 +262,7 @@ class MainWindow(QMainWindow):
             return
         self.hints.close("export")
         dialog = self.export_dialog()
+        dialog.exporter.set_folder(self.files.folder)
         dialog.show()
         dialog.raise_()
         dialog.activateWindow()

@@ -275,7 +275,7 @@ def _placement(stage: Stage) -> QWidget:
     # A beam that was moved by 12 mm and turned by half a degree.
     turn = np.radians(0.5)
     along = np.array([np.sin(turn), np.cos(turn), 0.0])
-    corner = np.array([762.0, -700.0, 225.0])
+    corner = np.array([1062.0, -700.0, 225.0])
     points = [corner, corner + 1000.0 * along, corner + 500.0 * along + [0.0, 0.0, -150.0]]
     dialog.set_points(np.round(points, 1))
     return dialog

@@ -94,9 +94,11 @@ class Stage:
         self.drawn()
 
     def drawn(self) -> None:
-        """Wait for the 3D view, where there is one."""
-        scene = self.window.scene
+        """Wait for all that the window still has to do, and for the 3D view, where there is one."""
+        scene, turns = self.window.scene, self.session.turns
         self.run_for(QUIET)
+        # Until another look is there, the window holds what it shows.
+        self.wait(lambda: not (turns.waiting or self.window.look_switch.going_on), "the look")
         if scene.canvas is not None and self.session.problem is not None:
             self.wait(lambda: scene.drawn, "the 3D view")
         self.run_for(QUIET)

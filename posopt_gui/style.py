@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable
 from typing import Final
 
-from PySide6.QtGui import QColor, QFont, QFontInfo, QPalette
-from PySide6.QtWidgets import QApplication
+from PySide6.QtCore import QCoreApplication
+from PySide6.QtGui import QColor, QFontDatabase, QFontInfo, QPalette
+from PySide6.QtWidgets import QApplication, QWidget
 
-from posopt_gui.theme import Theme
+from posopt_gui.theme import DARK, LIGHT, THEMES, Theme
 
 CHINESE_FONTS: Final = (
     "Microsoft YaHei UI", "PingFang SC", "Noto Sans CJK SC", "Source Han Sans SC",
@@ -16,7 +19,10 @@ CHINESE_FONTS: Final = (
 """Fonts with the characters in their mainland forms; others would be taken from any font."""
 
 STYLED: Final = "posopt_theme"
-"""Property of the application: the theme that it has."""
+"""Property of the application and of its windows: the theme that they have."""
+
+RULE: Final = re.compile(r"([^{}]+)\{([^{}]*)\}")
+"""Selectors and declarations of one rule of a style sheet."""
 
 
 def prepare_fonts() -> None:
@@ -25,18 +31,68 @@ def prepare_fonts() -> None:
     Call it once, before the first text is drawn; Latin letters stay those of the system's font.
     """
     font = QApplication.font()
-    QFont.insertSubstitutions(font.family(), [QFontInfo(font).family(), *CHINESE_FONTS])
+    # Substitutes alone are not asked in order: brackets would come from another font than words.
+    known = [one for one in CHINESE_FONTS if QFontDatabase.hasFamily(one)]
+    font.setFamilies([QFontInfo(font).family(), *known])
+    QApplication.setFont(font)
 
 
-def apply_theme(application: QApplication, theme: Theme) -> None:
-    """Give the whole application the colours of a theme."""
+def prepare_style(application: QApplication) -> None:
+    """Give the application the rules of all themes, once: setting them goes through all widgets."""
+    if application.property(STYLED) is None:
+        application.setStyle("Fusion")
+        application.setStyleSheet(of_all_themes(style_sheet))
+        application.setProperty(STYLED, "")
+
+
+def of_all_themes(sheet: Callable[[Theme], str]) -> str:
+    """The rules of all themes in one style sheet.
+
+    The light ones hold where no others do. Those of another theme hold in the main windows that
+    have its name as a property, and win there: each is like a light one with a condition more.
+    """
+    return sheet(LIGHT) + in_windows(sheet(DARK), DARK)
+
+
+def in_windows(sheet: str, theme: Theme) -> str:
+    """The rules of a style sheet for what is in a main window with that theme."""
+    window = f'QMainWindow[{STYLED}="{theme.name}"]'
+
+    def inside(selector: str) -> str:
+        of_window = selector.startswith("QMainWindow")
+        return selector.replace("QMainWindow", window) if of_window else f"{window} {selector}"
+
+    return "\n".join(
+        f"{', '.join(inside(one.strip()) for one in selectors.split(','))} {{{declarations}}}"
+        for selectors, declarations in RULE.findall(sheet)
+    )
+
+
+def apply_theme(application: QApplication, window: QWidget, theme: Theme) -> None:
+    """Let the widgets of a window have the colours of a theme, when they are styled the next time.
+
+    Widgets that are not on screen yet are styled by Qt, all others by `follow_theme`.
+    """
     if application.property(STYLED) != theme.name:
-        if application.property(STYLED) is None:
-            # Once is enough: it goes through all widgets, as the style sheet does.
-            application.setStyle("Fusion")
         application.setPalette(palette(theme))
-        application.setStyleSheet(style_sheet(theme))
         application.setProperty(STYLED, theme.name)
+    window.setProperty(STYLED, theme.name)
+
+
+def follow_theme(widget: QWidget) -> None:
+    """Look up again which rules hold for a widget; those in it are left as they are."""
+    style = widget.style()
+    style.unpolish(widget)
+    style.polish(widget)
+
+
+def style_popup(popup: QWidget | None) -> None:
+    """Give a list that Qt opens outside of all windows the colours of the theme."""
+    application = QCoreApplication.instance()
+    theme = THEMES.get(str(application.property(STYLED)), LIGHT) if application else LIGHT
+    sheet = style_sheet(theme) if theme.dark else ""
+    if popup is not None and popup.styleSheet() != sheet:
+        popup.setStyleSheet(sheet)
 
 
 def palette(theme: Theme) -> QPalette:
@@ -174,6 +230,8 @@ QHeaderView::up-arrow, QHeaderView::down-arrow {{ image: none; width: 0; height:
     border-left: 4px solid {theme.raised}; border-right: 4px solid {theme.raised}; }}
 QHeaderView::up-arrow {{ border-bottom: 4px solid {theme.accent}; }}
 QHeaderView::down-arrow {{ border-top: 4px solid {theme.accent}; }}
+QTableCornerButton::section {{ background: {theme.raised}; border: none;
+    border-bottom: 1px solid {theme.border}; }}
 QScrollBar:vertical {{ background: {theme.window}; width: 11px; margin: 0; }}
 QScrollBar::handle:vertical {{ background: {theme.border}; min-height: 24px; border-radius: 5px; }}
 QScrollBar:horizontal {{ background: {theme.window}; height: 11px; margin: 0; }}

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
-from PySide6.QtCore import QModelIndex, QSignalBlocker, Qt, QTimer, Signal
-from PySide6.QtGui import QBrush, QColor, QResizeEvent
+from PySide6.QtCore import (
+    QLocale,
+    QModelIndex,
+    QPersistentModelIndex,
+    QSignalBlocker,
+    Qt,
+    QTimer,
+    Signal,
+)
+from PySide6.QtGui import QBrush, QColor, QPalette, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QHeaderView,
+    QStyledItemDelegate,
+    QStyleOptionViewItem,
     QTableWidget,
     QTableWidgetItem,
     QWidget,
@@ -20,6 +30,36 @@ from posopt_gui.viewmodels.export_model import CheckRow
 HEADERS: Final = ("", "Check", "Value", "Limit", "Detail")
 WIDTHS: Final = {1: (25, 190), 2: (19, 140), 3: (19, 140)}
 """Columns with their share of the width [%] and their largest width; the detail gets the rest."""
+
+CHINESE_BLANK: Final = "\N{IDEOGRAPHIC SPACE}"
+
+
+class VerdictDelegate(QStyledItemDelegate):
+    """Words that keep their colour in a chosen row."""
+
+    def initStyleOption(  # noqa: N802 - Qt's name
+        self, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex
+    ) -> None:
+        """What is chosen is told by the ground alone."""
+        super().initStyleOption(option, index)
+        brush = index.data(Qt.ItemDataRole.ForegroundRole)
+        if brush is not None:
+            option.palette.setBrush(QPalette.ColorRole.HighlightedText, brush)
+
+
+class FigureDelegate(QStyledItemDelegate):
+    """Figures that stand on the line of the Chinese words beside them."""
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._look = look
+
+    def displayText(  # noqa: N802 - Qt's name
+        self, value: Any, locale: QLocale | QLocale.Language
+    ) -> str:
+        """A blank as high as a Chinese character makes a line of Latin letters as high."""
+        text = super().displayText(value, locale)
+        return f"{text}{CHINESE_BLANK}" if self._look.language == "zh_CN" else text
 
 
 class CheckTable(QTableWidget):
@@ -57,6 +97,8 @@ class CheckTable(QTableWidget):
         self._fitting.setInterval(0)
         self._fitting.timeout.connect(self.resizeRowsToContents)
         header.sectionResized.connect(lambda *_: self._fitting.start())
+        self.setItemDelegate(FigureDelegate(look, self))
+        self.setItemDelegateForColumn(0, VerdictDelegate(self))
         self.clicked.connect(self._choose)
         self.activated.connect(self._choose)
 

@@ -30,6 +30,7 @@ from posopt_gui.dialogs.program_preview import ProgramPreview
 from posopt_gui.dialogs.verdict_banner import VerdictBanner
 from posopt_gui.viewmodels.export_model import ExportStage, ExportView, export_view, format_of
 from posopt_gui.views.quiet_editors import QuietCombo
+from posopt_gui.views.refresh import Refresh
 
 SIZE: Final = (1240, 780)
 LEAST_SIZE: Final = (960, 620)
@@ -122,8 +123,9 @@ class ExportDialog(QDialog):
         self.report_button.clicked.connect(self.report_requested)
         self.close_button.clicked.connect(self.hide)
         self.export_button.clicked.connect(self._export)
-        self._session.look.language_changed.connect(self.retranslate)
-        self._session.look.theme_changed.connect(self.retheme)
+        session = self._session
+        session.look.language_changed.connect(Refresh(session, self.retranslate, self).next_turn)
+        session.look.theme_changed.connect(Refresh(session, self.retheme, self).next_turn)
 
     def retranslate(self) -> None:
         """Set all texts in the chosen language."""

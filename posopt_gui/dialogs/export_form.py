@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QDoubleSpinBox,
     QFrame,
@@ -212,4 +212,5 @@ def _millimetres(low: float, high: float, step: float, decimals: int) -> QDouble
     box.setRange(low, high)
     box.setSingleStep(step)
     box.setSuffix(" mm")
+    box.setAlignment(Qt.AlignmentFlag.AlignRight)
     return box

@@ -31,10 +31,11 @@ from posopt_gui.viewmodels.path_words import path_words
 from posopt_gui.views.choice_edit import ChoiceEdit
 from posopt_gui.views.field_widgets import FieldRow, structure
 from posopt_gui.views.flag_edit import FlagEdit
+from posopt_gui.views.refresh import Refresh
 from posopt_gui.views.setup_style import setup_style
 from solver.io.importers.columns import FIELDS
 
-SIZE = (880, 560)
+SIZE = (1040, 560)
 IGNORED = ""
 EXAMINE_DELAY = 60
 """How long the dialog waits for further answers before it reads the file again [ms]."""
@@ -71,8 +72,8 @@ class PathDialog(QDialog):
         self._rows: dict[tuple[object, ...], FieldRow] = {}
         self._columns: list[ChoiceEdit] = []
         self._lay_out()
-        session.look.language_changed.connect(self.retranslate)
-        session.look.theme_changed.connect(self.retheme)
+        session.look.language_changed.connect(Refresh(session, self.retranslate, self).next_turn)
+        session.look.theme_changed.connect(Refresh(session, self.retheme, self).next_turn)
         self.retheme()
         self._show_fields()
         self.show_preview(preview)

@@ -32,6 +32,7 @@ from posopt_gui.viewmodels.touched_points import (
 from posopt_gui.viewmodels.typed_numbers import refusal_words
 from posopt_gui.views.choice_edit import ChoiceEdit
 from posopt_gui.views.number_edit import NumberEdit
+from posopt_gui.views.refresh import Refresh
 from posopt_gui.views.setup_style import setup_style
 from solver.errors import InputError
 from solver.transforms import FloatArray, wpr_from_rotation
@@ -57,8 +58,8 @@ class PlacementDialog(QDialog):
         self._numbers: list[list[NumberEdit]] = []
         self._labels: list[QLabel] = []
         self._lay_out()
-        session.look.language_changed.connect(self.retranslate)
-        session.look.theme_changed.connect(self.retheme)
+        session.look.language_changed.connect(Refresh(session, self.retranslate, self).next_turn)
+        session.look.theme_changed.connect(Refresh(session, self.retheme, self).next_turn)
         session.state_changed.connect(self._refresh)
         self.retheme()
         self.retranslate()

@@ -28,6 +28,9 @@ def check_rank(name: str) -> int:
 
 def check_figure(figure: str, unit: str, tr: Translate) -> str:
     """A figure of a check with its unit; what follows a degree sign stands apart."""
+    if unit == "mm" and figure.isdecimal():
+        # Lengths have a decimal everywhere in the window.
+        figure += ".0"
     degrees, found, words = unit.partition("deg")
     if found and not degrees:
         shown = tr(unit) if words else "°"

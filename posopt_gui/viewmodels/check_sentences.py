@@ -11,9 +11,10 @@ from collections.abc import Callable
 from functools import cache
 from typing import Final
 
-from posopt_gui.viewmodels.number_words import plain_words
+from posopt_gui.viewmodels.number_words import body_words, group_words, typeset
 from posopt_gui.viewmodels.sentences_cells import CELL_SENTENCES
 from posopt_gui.viewmodels.sentences_general import GENERAL_SENTENCES
+from posopt_gui.viewmodels.sentences_json import JSON_SENTENCES
 from posopt_gui.viewmodels.sentences_meshes import MESH_SENTENCES
 from posopt_gui.viewmodels.sentences_paths import PATH_SENTENCES
 from posopt_gui.viewmodels.sentences_programs import PROGRAM_SENTENCES
@@ -126,6 +127,7 @@ PLACES: Final = ("at {place}", "{what} at {place}", "{name} in {file}")
 """Where something is; tried last of all, since they fit much."""
 
 PATTERNS: Final[tuple[str, ...]] = (
+    *JSON_SENTENCES,
     *PROGRAM_SENTENCES,
     *CELL_SENTENCES,
     *MESH_SENTENCES,
@@ -164,27 +166,39 @@ UNITS: Final[tuple[str, ...]] = (
 _PLACE_AFTER_CHINESE = re.compile(r"(?<=[\u4e00-\u9fff])(?=[A-Za-z0-9_.-]+\.\w+:\d)")
 """Before 'GROOVE.LS:39' behind a Chinese character, where a blank belongs."""
 
+_CHINESE_AFTER_PLACE = re.compile(r"(?<=[A-Za-z0-9])(:\d+)(?=[\u4e00-\u9fff])")
+"""The line of 'GROOVE.LS:39' before a Chinese character, where a blank belongs too."""
+
+_FIGURE_AFTER_CHINESE = re.compile(r"(?<=应为|际为)(?=[A-Za-z0-9'.-])")
+"""Before what was expected or found, where a blank belongs if it is no Chinese word."""
+
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 
 
 def sentence(text: str, tr: Translate) -> str:
     """A sentence of a check as `tr` says it; as it is where its pattern is not known."""
     if any(_expression(pattern).fullmatch(text) for pattern in LISTS):
-        return plain_words(_part(text, tr))
+        return typeset(_part(text, tr))
     said = tr("; ").join(_part(part, tr) for part in text.split("; "))
-    return plain_words(_PLACE_AFTER_CHINESE.sub(" ", said))
+    said = _CHINESE_AFTER_PLACE.sub(r"\1 ", _PLACE_AFTER_CHINESE.sub(" ", said))
+    return typeset(_FIGURE_AFTER_CHINESE.sub(" ", said))
 
 
 def _part(text: str, tr: Translate) -> str:
     for pattern in PATTERNS:
         found = _expression(pattern).fullmatch(text)
         if found is not None:
-            inside = {name: _part(value, tr) for name, value in found.groupdict().items()}
+            bodies = "{one} against {other}" in pattern
+            inside = {
+                name: body_words(value, tr)
+                if bodies and name in ("one", "other")
+                else _part(value, tr)
+                for name, value in found.groupdict().items()
+            }
             return tr(pattern, **inside) if inside else tr(pattern)
-    name = text.replace("_", " ")
-    shown = tr(name)
+    shown = tr(group_words(text))
     # Names of bodies have words of their own; all other names stay as they are.
-    return text if shown == name else shown
+    return text if shown == text.replace("_", " ") else shown
 
 
 def _held(name: str) -> str:

@@ -314,12 +314,22 @@ def feed_curve(report: ProgramReport | None) -> FeedCurve | None:
     )
 
 
+def move_steps(waypoint: FloatArray, value: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """A line of one value for the move to each waypoint (m,), interrupted where it changes."""
+    x = np.column_stack([waypoint - 1.0, waypoint]).ravel()
+    y = np.repeat(value, 2)
+    ends = 2 * np.flatnonzero((np.diff(waypoint) != 1.0) | (np.diff(value) != 0.0)) + 2
+    return np.insert(x, ends, x[ends - 1]), np.insert(y, ends, np.nan)
+
+
 def feed_words(translate: Translate, curve: FeedCurve, row: int) -> str:
     """Predicted and asked feed of a move; which joint limits it only where it falls short."""
     figures = {
         "slowest": decimal(curve.slowest[row], 1), "fastest": decimal(curve.fastest[row], 1),
         "asked": decimal(curve.asked[row], 1),
     }  # fmt: skip
+    if curve.held[row] and figures["slowest"] == figures["fastest"]:
+        return translate("predicted {slowest} mm/s, asked {asked} mm/s", **figures)
     if curve.held[row]:
         return translate("predicted {slowest} to {fastest} mm/s, asked {asked} mm/s", **figures)
     return translate(

@@ -30,6 +30,7 @@ from posopt_gui.viewmodels.form_types import (
     plain,
     table_of,
 )
+from posopt_gui.viewmodels.number_words import group_words
 from posopt_gui.viewmodels.project_files import path_file
 from solver.catalog.cell_path import FRAMES
 from solver.io.importers.beam_faces import Face
@@ -83,7 +84,7 @@ def source_fields(cell: Cell, facts: Facts) -> list[Field]:
     """What a path file may leave unsaid."""
     groups = facts.workpiece.groups if facts.workpiece is not None else ()
     # Parts of a beam have names in every language; a mesh has the name that it was given.
-    parts = tuple(Choice(one, one.replace("_", " ")) for one in groups)
+    parts = tuple(Choice(one, group_words(one)) for one in groups)
     if "workpiece" in cell:
         groups = (str(at(cell, "workpiece.group") or at(cell, "workpiece.name", "")),)
         parts = plain(groups)

@@ -55,7 +55,7 @@ def lean_section(cell: Cell) -> Section:
     sweep = at(cell, "settings.lean_deg")
     summary = ""
     if isinstance(sweep, list) and all(isinstance(one, int | float) for one in sweep[:3]):
-        summary = " … ".join(f"{one:g}" for one in sweep[:2]) + "°"
+        summary = " … ".join(f"{one:g}".replace("-", "−") for one in sweep[:2]) + "°"
     return Section(
         "lean",
         "Lean and branches",

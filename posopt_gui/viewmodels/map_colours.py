@@ -232,7 +232,7 @@ class Scale:
 
     def text(self, value: float) -> str:
         """A value as it stands beside the bar."""
-        return f"{value:.{self.decimals}f}"
+        return f"{value:,.{self.decimals}f}".replace("-", "−")
 
     def ticks(self, most: int = 6) -> tuple[Tick, ...]:
         """Round values within the scale with their places."""

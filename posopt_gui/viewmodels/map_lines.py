@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from posopt_gui.viewmodels.map_model import Cells, Choice
+from posopt_gui.viewmodels.number_words import listed
 from solver.model.settings import Scheme
 from solver.transforms import FloatArray, IntArray
 from solver.units import DEG_PER_RAD
@@ -155,13 +156,13 @@ def end_words(
     turns = len({arms for arms, _ in passed}) == 1
     said = []
     for line, (own, own_turns) in zip(lines, passed, strict=True):
-        words = ", ".join(map(translate, line.names))
+        words = listed(map(translate, line.names), translate)
         if len({*passed}) > 1 or len(own) > 1:
             shown = "/".join(map(str, own))
             words += " · " + translate("branch {number}", number=shown)
         if len({*passed}) > 1 and turns:
             shown = "/".join(str(one + 1) for one in own_turns)
-            words += ", " + translate("turn {number}", number=shown)
+            words += translate(", ") + translate("turn {number}", number=shown)
         said.append(words)
     return tuple(said)
 

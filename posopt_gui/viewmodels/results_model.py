@@ -12,7 +12,13 @@ from posopt_gui.viewmodels.check_figures import check_figure, figures
 from posopt_gui.viewmodels.check_sentences import sentence
 from posopt_gui.viewmodels.curves_model import Track, kind_label
 from posopt_gui.viewmodels.export_model import waypoint_of
-from posopt_gui.viewmodels.number_words import NOTHING, clearance_mm, decimal, signed
+from posopt_gui.viewmodels.number_words import (
+    NOTHING,
+    clearance_mm,
+    decimal,
+    signed,
+    typeset,
+)
 from posopt_gui.viewmodels.trouble_model import Trouble
 from posopt_gui.viewmodels.verdicts import Note
 from solver.analysis.check import Check
@@ -220,7 +226,7 @@ def notes(
         found += _plan_notes(result, sequence, translate)
         problem = result.problem
         found += [
-            Note("info", translate(one))
+            Note("info", typeset(translate(one)))
             for one in (*problem.assumptions, *problem.robot.assumptions)
         ]
     return tuple(found)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from posopt_gui.viewmodels.inspector_model import UNDER_SAFETY, VERDICTS
-from posopt_gui.viewmodels.number_words import decimal
+from posopt_gui.viewmodels.number_words import decimal, group_words
 from posopt_gui.viewmodels.scene_model import CellModel
 from posopt_gui.viewmodels.scene_probe import PoseReport, Touch
 from solver.candidates.outcomes import Outcome
@@ -75,4 +75,4 @@ def note_lines(
 
 def spoken(tr: Translate, name: str) -> str:
     """The group of a body, named 'group' or 'group (body)', in words."""
-    return tr(name.split(" (", maxsplit=1)[0].replace("_", " "))
+    return tr(group_words(name.split(" (", maxsplit=1)[0]))

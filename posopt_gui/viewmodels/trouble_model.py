@@ -99,7 +99,8 @@ def _plan_trouble(error: PosoptError, translate: Translate) -> Trouble:
 def _layer_cause(layer: Any, translate: Translate) -> Cause:
     worst, nearest = layer.missed, layer.nearest
     counts = translate(", ").join(
-        f"{count} {translate(kind.label)}" for kind, count in layer.rejected.items()
+        translate("{count} {outcome}", count=count, outcome=translate(kind.label))
+        for kind, count in layer.rejected.items()
     )
     text = translate(
         "Waypoint {number}: every candidate is rejected ({counts}). The nearest, lean {lean}° on "

@@ -97,20 +97,21 @@ def fitted(
     bar that lies over the picture.
     """
     camera = Camera(np.zeros(3), 1.0, azimuth, elevation, field)
-    local = points @ camera.axes.T
+    # One row for each axis: reducing long rows is several times as fast as reducing columns.
+    local = np.ascontiguousarray((points @ camera.axes.T).T)
     half = math.tan(math.radians(field) / 2.0)
-    middle = (local.min(axis=0) + local.max(axis=0)) / 2.0
+    middle = (local.min(axis=1) + local.max(axis=1)) / 2.0
     upward = half / aspect * (1.0 - above)
     for _ in range(8):
-        rest = local - middle
+        rest = local - middle[:, None]
         needed = [
-            np.abs(rest[:, 0]) * MARGIN[0] / half + rest[:, 2],
-            np.abs(rest[:, 1]) * MARGIN[1] / upward + rest[:, 2],
+            np.abs(rest[0]) * MARGIN[0] / half + rest[2],
+            np.abs(rest[1]) * MARGIN[1] / upward + rest[2],
         ]
         distance = float(np.max(needed))
         # Nearer points look larger: move the centre until left and right, top and bottom agree.
-        seen = rest[:, :2] / (distance - rest[:, 2:])
-        middle[:2] += (seen.min(axis=0) + seen.max(axis=0)) / 2.0 * distance
+        seen = rest[:2] / (distance - rest[2])
+        middle[:2] += (seen.min(axis=1) + seen.max(axis=1)) / 2.0 * distance
     middle[1] += above * half / aspect * distance
     return Camera(middle @ camera.axes, max(distance, 0.05), azimuth, elevation, field)
 

@@ -8,6 +8,7 @@ from PySide6.QtCore import QEvent, QObject, Qt, QTimer, Signal
 from PySide6.QtGui import QFocusEvent, QWheelEvent
 from PySide6.QtWidgets import QComboBox, QCompleter, QLineEdit, QWidget
 
+from posopt_gui.style import style_popup
 from posopt_gui.views.quiet_editors import QuietCombo
 from posopt_gui.views.text_edit import EscapeLeaves
 
@@ -39,6 +40,7 @@ class ChoiceEdit(QuietCombo):
             completer.setFilterMode(Qt.MatchFlag.MatchContains)
             completer.setCaseSensitivity(Qt.CaseSensitivity.CaseInsensitive)
             completer.setCompletionMode(QCompleter.CompletionMode.PopupCompletion)
+            self._line().textEdited.connect(lambda _: style_popup(completer.popup()))
             self.setCompleter(completer)
             self._line().editingFinished.connect(self._take_text)
             self._line().installEventFilter(self)
@@ -106,6 +108,7 @@ class ChoiceEdit(QuietCombo):
         completer = self.completer()
         if completer is None:
             return
+        style_popup(completer.popup())
         completer.setCompletionPrefix("")
         completer.complete()
         self._line().selectAll()

@@ -200,5 +200,5 @@ class CurveLegend(QWidget):
         self._plan_sample.setPixmap(line_sample(PLAN, theme))
         self._show_samples()
         self.setStyleSheet(
-            'QToolButton { padding: 2px 3px; } QToolButton[popupMode="2"] { padding-right: 18px; }'
+            'QToolButton { padding: 2px 3px; } QToolButton[popupMode="2"] { padding-right: 14px; }'
         )

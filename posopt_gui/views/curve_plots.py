@@ -20,6 +20,8 @@ from posopt_gui.viewmodels.curves_model import (
     joint_range,
     waypoint_axis,
 )
+from posopt_gui.views.column_bars import ColumnBars
+from posopt_gui.views.plot_painting import CurveLine, follow_at_once
 from solver.transforms import FloatArray
 
 LEFT_AXIS = 56
@@ -42,9 +44,6 @@ TICK_ROOM = 18
 
 LIMIT_COLOUR = "#E69F00"
 """Beyond a joint limit, as on the map."""
-
-MANY = 1_500
-"""From so many waypoints on lines are thinned and drawn without smoothing."""
 
 FAR = 1e5
 """Beyond every axis."""
@@ -111,10 +110,10 @@ class WaypointPlot(pg.PlotWidget):
         for name in ("left", "bottom"):
             plot.getAxis(name).enableAutoSIPrefix(False)
         plot.setContentsMargins(0.0, 0.0, 0.0 if gauged else float(GAUGE), 0.0)
-        self.setMinimumHeight(18 if gauged else 110)
+        self.setMinimumHeight(16 if gauged else 110)
         self._theme: Theme | None = None
-        self._curves: dict[str, pg.PlotDataItem] = {}
-        self._bars: list[pg.BarGraphItem] = []
+        self._curves: dict[str, CurveLine] = {}
+        self._bars: ColumnBars | None = None
         self._borders: list[pg.InfiniteLine] = []
         self._bands: list[pg.LinearRegionItem] = []
         self._count = -1
@@ -129,6 +128,7 @@ class WaypointPlot(pg.PlotWidget):
         self._readout.setZValue(60)
         self._readout.setPos(QPointF(3, 0))
         self._level_words = pg.TextItem("", anchor=(1, 0))
+        self._level_words.hide()
         self._level_words.setParentItem(plot.getViewBox())
         self._level_words.setZValue(60)
         plot.getViewBox().sigResized.connect(self._put_level_words)
@@ -142,6 +142,7 @@ class WaypointPlot(pg.PlotWidget):
         )
         self.scene().sigMouseClicked.connect(self._on_click)
         box = plot.getViewBox()
+        follow_at_once(box)
         box.disableAutoRange()
         # Only what a person does is told; else views that are linked would answer one another.
         box.sigRangeChangedManually.connect(
@@ -180,7 +181,7 @@ class WaypointPlot(pg.PlotWidget):
         for line in self._borders:
             line.setPen(pg.mkPen(QColor(theme.border), width=1.0))
         for name, curve in self._curves.items():
-            curve.setPen(line_pen(name, theme))
+            curve.set_pen(line_pen(name, theme))
 
     def set_place(self, place: float) -> None:
         """Move the cursor line, without telling anybody."""
@@ -260,33 +261,21 @@ class WaypointPlot(pg.PlotWidget):
         for name, curve in self._curves.items():
             curve.setVisible(name in curves)
         for name, values in curves.items():
-            many = len(values) > MANY
-            curve = self._curves.get(name)
-            if curve is None:
-                curve = pg.PlotDataItem(connect="finite", clipToView=True)
-                curve.setDownsampling(auto=True, method="peak")
+            if name not in self._curves:
+                curve = self._curves[name] = CurveLine()
                 curve.setZValue(20 if name == PLAN else 10)
-                curve.setPen(line_pen(name, theme))
-                self.addItem(curve)
-                self._curves[name] = curve
-            curve.opts["antialias"] = not many
-            curve.setData(*broken(values, places))
+                curve.set_pen(line_pen(name, theme))
+                self.addItem(curve, ignoreBounds=True)
+            self._curves[name].set_points(*broken(values, places))
 
     def set_stack(self, values: FloatArray, colours: Iterable[str]) -> None:
         """Draw (n, k) values as stacked bars at the waypoints."""
         height = np.nan_to_num(values)
-        base = np.cumsum(height, axis=1) - height
-        x = waypoint_axis(len(values))
-        for column, colour in enumerate(colours):
-            shape = {
-                "x": x, "y0": base[:, column], "height": height[:, column], "width": 0.72,
-                "brush": QColor(colour), "pen": pg.mkPen(None),
-            }  # fmt: skip
-            if column < len(self._bars):
-                self._bars[column].setOpts(**shape)
-                continue
-            self._bars.append(pg.BarGraphItem(**shape))
-            self.addItem(self._bars[-1])
+        if self._bars is None:
+            self._bars = ColumnBars(0.72, stacked=True)
+            self.addItem(self._bars, ignoreBounds=True)
+        edges = np.column_stack([np.zeros(len(height)), np.cumsum(height, axis=1)])
+        self._bars.set_bars(waypoint_axis(len(values)), edges, [QColor(one) for one in colours])
 
     def set_bands(self, limits: tuple[float, float], colour: str) -> None:
         """Hatch what lies beyond two limits, and draw the limits themselves."""
@@ -318,17 +307,21 @@ class WaypointPlot(pg.PlotWidget):
             self.removeItem(self._level)
             self._level = None
             self._level_words.setText("")
+            self._level_words.hide()
         if value is None or not np.isfinite(value):
             return
         pen = pg.mkPen(QColor(colour), width=1.4, style=Qt.PenStyle.DashLine)
         self._level = pg.InfiniteLine(value, angle=0, pen=pen)
         self.addItem(self._level, ignoreBounds=True)
         self._level_words.setText(f"– – {label}", QColor(colour))
+        self._level_words.show()
         self._put_level_words()
 
     def set_beyond(self, words: str, colour: str) -> None:
         """Name in the right corner what reaches beyond the axis, in plots without a level."""
         self._level_words.setText(words, QColor(colour))
+        # Without words its ground would still hide the end of the curves.
+        self._level_words.setVisible(bool(words))
         self._put_level_words()
 
     def _put_level_words(self, *_: object) -> None:

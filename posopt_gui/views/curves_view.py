@@ -49,7 +49,7 @@ from posopt_gui.views.measures_table import MeasuresTable
 from posopt_gui.views.refresh import Refresh
 from solver.units import DEG_PER_RAD, MM_PER_M
 
-ROW = 18
+ROW = 16
 """Least height of a joint's row [px]."""
 
 GAUGED, PLAIN = 6, 4
@@ -133,7 +133,7 @@ class CurvesView(QWidget):
         self.tabs.setDocumentMode(True)
         self.tabs.tabBar().setDrawBase(False)
         # All seven names beside the legend in the smallest window.
-        self.tabs.setStyleSheet("QTabBar::tab { padding: 6px 5px; }")
+        self.tabs.setStyleSheet("QTabBar::tab { padding: 6px 4px; }")
         for page in (
             self._scroll, self.clearance_plot, self.manipulability_plot, self.step_plot,
             self.feed, self.bars, self.table,
@@ -150,6 +150,9 @@ class CurvesView(QWidget):
         for plot in self.plots:
             plot.place_wanted.connect(self._on_place_wanted)
             plot.x_range_changed.connect(self._on_x_range)
+        for plot in self.joint_plots:
+            # Rows take other heights only after their least heights; the curves have to fit them.
+            plot.getPlotItem().getViewBox().sigResized.connect(self._drawing.soon)
         self.legend.changed.connect(self._draw)
         self.tabs.currentChanged.connect(self._on_tab)
         self.comparison.changed.connect(self._drawing.soon)
@@ -157,8 +160,8 @@ class CurvesView(QWidget):
         session.place_changed.connect(self._on_place)
         session.check_changed.connect(self._checks.soon)
         session.stale_changed.connect(self._on_stale)
-        session.look.language_changed.connect(self.retranslate)
-        session.look.theme_changed.connect(self.retheme)
+        session.look.language_changed.connect(Refresh(session, self.retranslate, self).next_turn)
+        session.look.theme_changed.connect(Refresh(session, self.retheme, self).next_turn)
 
     def retranslate(self) -> None:
         """Set all texts again."""
@@ -243,7 +246,7 @@ class CurvesView(QWidget):
 
     def _on_tab(self, index: int) -> None:
         self.legend.show_joints(self.tabs.currentWidget() is self._scroll)
-        self.legend.setVisible(self.tabs.currentWidget() is not self.table)
+        self.legend.setVisible(self.tabs.currentWidget() not in (self.feed, self.table))
         self._fit_legend()
         self._draw()
 
@@ -371,8 +374,10 @@ class CurvesView(QWidget):
         self.feed.show_readout(self._session.cursor)
         plan, result = self._plan, self._session.result
         if plan is None or result is None or self._session.cursor >= len(plan.joints):
+            planning = self._session.planning
+            words = self._tr("Planning…") if planning else self._tr("There is no plan.")
             for plot in self.plots:
-                plot.set_readout("")
+                plot.set_readout("" if plot in self.joint_plots[1:] else words)
             return
         at = self._session.cursor
         if self.tabs.currentWidget() is self._scroll:

@@ -9,8 +9,10 @@ from PySide6.QtGui import QColor, QShowEvent
 from PySide6.QtWidgets import QLabel, QPushButton, QStackedWidget, QVBoxLayout, QWidget
 
 from posopt_gui.controllers.session import Session
-from posopt_gui.viewmodels.curves_model import FeedCurve, feed_curve, feed_words
+from posopt_gui.viewmodels.curves_model import FeedCurve, feed_curve, feed_words, move_steps
+from posopt_gui.views.column_bars import ColumnBars
 from posopt_gui.views.curve_plots import WaypointPlot
+from posopt_gui.views.plot_painting import CurveLine
 
 
 class FeedPanel(QStackedWidget):
@@ -87,24 +89,26 @@ class FeedPanel(QStackedWidget):
     def _draw(self, curve: FeedCurve) -> None:
         theme = self._session.look.theme
         tolerance = self._tolerance()
-        steps = np.column_stack([curve.waypoint - 1.0, curve.waypoint]).ravel()
-        asked = np.repeat(curve.asked, 2)
+        steps, asked = move_steps(curve.waypoint, curve.asked)
         for share, pen in (
             (0.0, pg.mkPen(QColor(theme.muted), width=1.2, style=Qt.PenStyle.DashLine)),
             (-tolerance, pg.mkPen(QColor(theme.warning), width=1.0, style=Qt.PenStyle.DotLine)),
             (tolerance, pg.mkPen(QColor(theme.warning), width=1.0, style=Qt.PenStyle.DotLine)),
         ):
-            self._add(pg.PlotDataItem(steps, asked * (1.0 + share), connect="pairs", pen=pen))
+            line = CurveLine()
+            line.set_pen(pen)
+            line.set_points(steps, asked * (1.0 + share))
+            self._add(line)
+        words = self._tr("feed tolerance ±{share} %", share=f"{100.0 * tolerance:g}")
+        self.plot.set_beyond(f"∙∙∙∙ {words}" if tolerance else "", theme.warning)
         for held, colour in ((True, theme.accent), (False, theme.error)):
             chosen = curve.held == held
             if not chosen.any():
                 continue
-            low, high = curve.slowest[chosen], curve.fastest[chosen]
-            bar = pg.BarGraphItem(
-                x=curve.waypoint[chosen] - 0.5, y0=low, height=high - low, width=0.92,
-                brush=QColor(colour), pen=pg.mkPen(QColor(colour), width=2.0),
-            )  # fmt: skip
-            self._add(bar)
+            edges = np.column_stack([curve.slowest[chosen], curve.fastest[chosen]])
+            bars = ColumnBars(0.92, stacked=False)
+            bars.set_bars(curve.waypoint[chosen] - 0.5, edges, [QColor(colour)], outline=2.0)
+            self._add(bars)
         room = 1.0 + 1.6 * tolerance
         low = min(float(curve.slowest.min()), float(curve.asked.min()) / room)
         high = max(float(curve.fastest.max()), float(curve.asked.max()) * room)
@@ -116,7 +120,7 @@ class FeedPanel(QStackedWidget):
         return result.problem.program.feed_tolerance if result is not None else 0.0
 
     def _add(self, item: pg.GraphicsObject) -> None:
-        self.plot.addItem(item)
+        self.plot.addItem(item, ignoreBounds=True)
         self._items.append(item)
 
     def show_readout(self, waypoint: int) -> None:

@@ -53,7 +53,7 @@ class FrontPlot(pg.PlotWidget):
         self._model: FrontModel | None = None
         self._present: Mark | None = None
         self._index: int | None = None
-        self._words = {"knee": "", "plan": "", "safety": ""}
+        self._words = {"knee": "", "plan": "", "safety": "", "comma": ", "}
         self._make_items()
         self.scene().sigMouseMoved.connect(self._on_move)
         self.scene().sigMouseClicked.connect(self._on_click)
@@ -120,9 +120,9 @@ class FrontPlot(pg.PlotWidget):
             item.setColor(QColor(theme.muted))
         self._muted = theme.muted
 
-    def set_words(self, knee: str, plan: str, safety: str) -> None:
-        """Name the knee, the plan and the safety distance."""
-        self._words = {"knee": knee, "plan": plan, "safety": safety}
+    def set_words(self, knee: str, plan: str, safety: str, comma: str) -> None:
+        """Name the knee, the plan and the safety distance, and say what parts names."""
+        self._words = {"knee": knee, "plan": plan, "safety": safety, "comma": comma}
 
     def set_model(
         self, model: FrontModel | None, present: Mark | None, safety: float | None
@@ -201,7 +201,8 @@ class FrontPlot(pg.PlotWidget):
             self._plan.clear()
             return
         self._plan.setData([present.clearance], [present.cost])
-        self._plan_name.setText(", ".join([self._words["plan"], *(one.name for one in same)]))
+        names = [self._words["plan"], *(one.name for one in same)]
+        self._plan_name.setText(self._words["comma"].join(names))
         self._place(self._plan_name, present.clearance, present.cost)
 
     def _place(

@@ -19,6 +19,7 @@ from posopt_gui.controllers.session import Session
 from posopt_gui.viewmodels.front_model import cost_words, point_words, summary
 from posopt_gui.viewmodels.number_words import decimal
 from posopt_gui.views.front_plot import FrontPlot
+from posopt_gui.views.refresh import Refresh
 from posopt_gui.views.shell_parts import ElidedLabel
 from solver.units import MM_PER_M
 
@@ -94,8 +95,8 @@ class FrontView(QWidget):
         front.progress.connect(self._on_progress)
         session.result_changed.connect(self.refresh)
         session.stale_changed.connect(self.refresh)
-        session.look.language_changed.connect(self.retranslate)
-        session.look.theme_changed.connect(self.retheme)
+        session.look.language_changed.connect(Refresh(session, self.retranslate, self).next_turn)
+        session.look.theme_changed.connect(Refresh(session, self.retheme, self).next_turn)
 
     def retranslate(self) -> None:
         """Set all texts again."""
@@ -152,7 +153,7 @@ class FrontView(QWidget):
         if model is not None:
             safety = self._safety()
             name = self._tr("safety distance {value} mm", value=decimal(safety or 0.0, 2))
-            self.plot.set_words(self._tr("knee"), self._tr("plan"), name)
+            self.plot.set_words(self._tr("knee"), self._tr("plan"), name, self._tr(", "))
             self.plot.setLabel("left", cost_words(model, self._tr))
             self.plot.set_model(model, front.present, safety)
             self._stack.setCurrentWidget(self.plot)

@@ -16,6 +16,9 @@ SIZE: Final = (900, 760)
 MARGIN: Final = 28
 """Room beside the text [px]."""
 
+BROKEN: Final = re.compile("(?<=[\u3001-\u9fff\uff01-\uff5e])\n(?=[\u4e00-\u9fff\uff08])")
+"""Where a line of Chinese words is broken in its file: no blank belongs there."""
+
 
 class GuidePage(QTextBrowser):
     """Markdown with its pictures made as wide as the page at most."""
@@ -26,14 +29,18 @@ class GuidePage(QTextBrowser):
         self.setOpenLinks(False)
         self.anchorClicked.connect(self._follow)
         self.document().setDocumentMargin(MARGIN)
+        # All lines are broken and pictures scaled; a bar would only say that there was no bar yet.
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self._later = QTimer(self)
         self._later.setSingleShot(True)
         self._later.setInterval(120)
         self._later.timeout.connect(self.reload)
 
     def loadResource(self, kind: int, name: QUrl | str) -> Any:  # noqa: N802 - Qt's name
-        """Scale pictures down to the page."""
+        """Scale pictures down to the page, and join broken lines of Chinese words."""
         file = self.source().resolved(QUrl(name)).toLocalFile()
+        if file.lower().endswith(".md") and Path(file).is_file():
+            return BROKEN.sub("", Path(file).read_text("utf-8"))
         if not file.lower().endswith((".png", ".svg")):
             return super().loadResource(kind, QUrl(name))
         image = QImage(file)

@@ -141,8 +141,8 @@ class InspectorView(QScrollArea):
         session.check_changed.connect(Refresh(session, self._show_gate, self).soon)
         self.gate.link_activated.connect(self._on_link)
         self.totals.link_activated.connect(self._on_link)
-        session.look.language_changed.connect(self.retranslate)
-        session.look.theme_changed.connect(self.retheme)
+        session.look.language_changed.connect(Refresh(session, self.retranslate, self).next_turn)
+        session.look.theme_changed.connect(Refresh(session, self.retheme, self).next_turn)
 
     def retranslate(self) -> None:
         """Set all texts again."""
@@ -313,10 +313,15 @@ class InspectorView(QScrollArea):
         for row in rows:
             colour = self._colour(row.state)
             margin = theme.text if row.state == "good" else colour
+            # In a low window each line counts: a joint stands beside the name, and the nearest
+            # bodies right above with their clearance.
+            beside = row.subject if row.subject.startswith("J") else ""
+            below = "" if beside or row.subject == self.bodies.text() else row.subject
+            name = Text(row.name, theme.text, False, beside, below, theme.muted)
             shown.append(
                 (
                     Text(STATES[row.state], colour),
-                    Text(row.name, theme.text, below=row.subject, below_colour=theme.muted),
+                    name,
                     Text(row.value, theme.muted, right=True),
                     Text(row.margin, margin, right=True),
                 )

@@ -13,7 +13,7 @@ from posopt_gui.viewmodels.inspector_model import JointBar
 from posopt_gui.viewmodels.number_words import decimal
 from posopt_gui.views.result_tables import tabular
 
-ROW = 24
+ROW = 20
 """Height of a bar's row [px]."""
 
 TRACK = 6.0

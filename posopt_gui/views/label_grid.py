@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence as Rows
 from dataclasses import dataclass
+from typing import Final
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QLabel, QSizePolicy, QWidget
@@ -14,18 +15,21 @@ from posopt_gui.views.result_tables import tabular
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A text in a colour, with a smaller line below it where there is one."""
+    """A text in a colour, with what is `beside` it and a line `below` it in another one."""
 
     words: str
     colour: str
     right: bool = False
+    beside: str = ""
     below: str = ""
     below_colour: str = ""
 
     @property
     def html(self) -> str:
         """As rich text."""
-        return f'<span style="color:{self.colour}">{self.words}</span>'
+        words = f'<span style="color:{self.colour}">{self.words}</span>'
+        beside = f' <span style="color:{self.below_colour}">{self.beside}</span>'
+        return words + beside if self.beside else words
 
     @property
     def html_below(self) -> str:
@@ -35,6 +39,9 @@ class Text:
 
 ONE_LINE = 30
 """Most characters of words that stand in one line."""
+
+CHINESE: Final = "国"
+"""A character that is as high as any other of its kind."""
 
 _TAGS = re.compile("<[^>]*>")
 
@@ -50,6 +57,7 @@ class LabelGrid(QWidget):
         self._labels: list[list[QLabel]] = []
         self._below: list[QLabel] = []
         self._rows: tuple[tuple[Text, ...], ...] = ()
+        self._line = QLabel(CHINESE).sizeHint().height()
         self._grid = QGridLayout(self)
         self._grid.setContentsMargins(0, 2, 0, 2)
         self._grid.setHorizontalSpacing(8)
@@ -68,9 +76,14 @@ class LabelGrid(QWidget):
         self._rows = tuple(rows)
         while len(self._labels) < len(self._rows):
             self._add()
+        # Rows of Latin letters alone would stand closer to each other.
+        words = "".join(row[0].words + row[1].words for row in self._rows)
+        line = self._line if re.search("[\u4e00-\u9fff]", words) else 0
         for index, (labels, below) in enumerate(zip(self._labels, self._below, strict=True)):
             shown = index < len(self._rows)
             lower = next((one for one in self._rows[index] if one.below), None) if shown else None
+            self._grid.setRowMinimumHeight(2 * index, line if shown else 0)
+            self._grid.setRowMinimumHeight(2 * index + 1, line if lower is not None else 0)
             below.setVisible(lower is not None)
             if lower is not None:
                 below.setText(lower.html_below)

@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QColor, QPen
+from PySide6.QtGui import QColor, QImage, QPen
 from PySide6.QtWidgets import QWidget
 
 from posopt_gui.viewmodels.map_colours import CellClass, Layer, Scale
+from posopt_gui.viewmodels.map_columns import worst_of_columns
 from posopt_gui.viewmodels.map_lines import (
     BEFORE,
     CHOSEN,
@@ -45,7 +46,7 @@ from solver.model.wishes import Pin, Region
 from solver.transforms import FloatArray
 from solver.units import DEG_PER_RAD
 
-BOTTOM_AXIS = 42
+BOTTOM_AXIS = 38
 """Height of the numbers and the words below the cells [px]."""
 
 DIMMED = 0.35
@@ -168,8 +169,13 @@ class MapCanvas(MapPlot):
             self._cells.set_cells(None, QRectF(), ground)
             self._letters.set_cells(None, QRectF(), {})
             return
-        image = image_of(cells.indices(scale), colours.table(cells.layer))
-        self._cells.set_cells(image, self.frame(), ground)
+        indices, table = cells.indices(scale), colours.table(cells.layer)
+        outcome = cells.layer is Layer.OUTCOME
+
+        def columns(each: int) -> QImage:
+            return image_of(worst_of_columns(indices, each, outcome=outcome), table)
+
+        self._cells.set_cells(image_of(indices, table), self.frame(), ground, columns)
         letters = {
             kind: qcolour(letter_colour(colour, 150)) for kind, colour in colours.classes.items()
         }

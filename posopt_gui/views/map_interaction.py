@@ -11,6 +11,7 @@ from PySide6.QtCore import QEvent, QPoint, QPointF, Qt, Signal
 from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import QGraphicsSceneResizeEvent, QGraphicsSceneWheelEvent, QWidget
 
+from posopt_gui.views.plot_painting import follow_at_once
 from solver.transforms import FloatArray
 
 GRAB_DISTANCE = 9.0
@@ -35,6 +36,16 @@ class Cell:
 
     waypoint: int
     row: int
+
+
+class LeanAxis(pg.AxisItem):
+    """An axis whose numbers have a true minus."""
+
+    def tickStrings(  # noqa: N802 - pyqtgraph's name
+        self, values: list[float], scale: float, spacing: float
+    ) -> list[str]:
+        """Numbers as they are said everywhere else."""
+        return [one.replace("-", "−") for one in super().tickStrings(values, scale, spacing)]
 
 
 class WaypointAxis(pg.AxisItem):
@@ -91,11 +102,10 @@ class MapPlot(pg.PlotWidget):
     menu_wanted = Signal(object, QPoint)
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        axis = WaypointAxis(orientation="bottom")
-        super().__init__(
-            parent, viewBox=MapBox(enableMenu=False), axisItems={"bottom": axis}, enableMenu=False
-        )
+        axes = {"bottom": WaypointAxis(orientation="bottom"), "left": LeanAxis(orientation="left")}
+        super().__init__(parent, viewBox=MapBox(enableMenu=False), axisItems=axes, enableMenu=False)
         self.hideButtons()
+        follow_at_once(self.getViewBox())
         self.viewport().setMouseTracking(True)
         self.forbidding = False
         self.draggable = True

@@ -10,10 +10,12 @@ import numpy as np
 import pyqtgraph as pg
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen, QPolygonF, QTransform
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QTransform
 
 from posopt_gui.viewmodels.label_places import label_places
+from posopt_gui.viewmodels.line_thinning import drawn_points
 from posopt_gui.views.map_items import qcolour
+from posopt_gui.views.plot_painting import SMOOTHED, InView, view_key
 from solver.transforms import FloatArray
 
 FAINT = 95
@@ -42,30 +44,19 @@ class Stroke:
     breaks: FloatArray = field(default_factory=lambda: NO_BREAKS)
 
 
-class _InView(pg.GraphicsObject):
-    """An item that draws in pixels and is asked only for what can be seen."""
-
-    def boundingRect(self) -> QRectF:  # noqa: N802 - Qt's name
-        """The visible part of the plot."""
-        view = self.getViewBox()
-        return view.viewRect() if view is not None else QRectF()
-
-    def viewTransformChanged(self) -> None:  # noqa: N802 - pyqtgraph's name
-        """What can be seen is another part now."""
-        self.prepareGeometryChange()
-
-
-class LinesItem(_InView):
+class LinesItem(InView):
     """Lines with a casing, so that they stand out from any colour below."""
 
     def __init__(self) -> None:
         super().__init__()
         self._strokes: tuple[Stroke, ...] = ()
+        self._drawn: tuple[object, list[_Drawn]] = (None, [])
         self._casing, self._warning = QColor(), QColor()
 
     def set_strokes(self, strokes: Sequence[Stroke], casing: QColor, warning: QColor) -> None:
         """Show other lines, the last one on top; `warning` marks their breaks."""
         self._strokes, self._casing, self._warning = tuple(strokes), casing, warning
+        self._drawn = (None, [])
         self.update()
 
     def paint(self, painter: QPainter, *_: Any) -> None:
@@ -75,18 +66,14 @@ class LinesItem(_InView):
             return
         seen, transform = view.viewRect(), painter.transform()
         painter.resetTransform()
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing, True)
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        width = transform.mapRect(seen).width()
-        for stroke in self._strokes:
-            first = max(int(seen.left() - stroke.waypoint[0]) - 1, 0)
-            last = min(int(seen.right() - stroke.waypoint[0]) + 3, len(stroke.waypoint))
-            # Two points a pixel are all that can be told apart.
-            step = max(1, int((last - first) / max(2.0 * width, 1.0)))
-            part = slice(first, last, step)
-            x = transform.m11() * stroke.waypoint[part] + transform.dx()
-            y = transform.m22() * stroke.lean[part] + transform.dy() + stroke.shift
-            self._draw(painter, stroke, x, y, stroke.shown[part])
+        key = view_key(transform, seen)
+        if key != self._drawn[0]:
+            self._drawn = key, [_drawn(one, transform, seen) for one in self._strokes]
+        for stroke, drawn in zip(self._strokes, self._drawn[1], strict=True):
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing, drawn.smooth)
+            self._draw(painter, stroke, drawn)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, True)
         for stroke in self._strokes:
             for place in stroke.breaks:
                 lean = float(np.interp(place, stroke.waypoint, stroke.lean))
@@ -94,26 +81,15 @@ class LinesItem(_InView):
                 self._draw_break(painter, point + QPointF(0.0, stroke.shift))
         painter.setTransform(transform)
 
-    def _draw(
-        self,
-        painter: QPainter,
-        stroke: Stroke,
-        x: FloatArray,
-        y: FloatArray,
-        shown: NDArray[np.bool_],
-    ) -> None:
-        points = [QPointF(a, b) for a, b in zip(x.tolist(), y.tolist(), strict=True)]
-        if not shown.all():
+    def _draw(self, painter: QPainter, stroke: Stroke, drawn: _Drawn) -> None:
+        if drawn.faint is not None:
             pen = QPen(stroke.pen)
             pen.setColor(qcolour(pen.color().name(), FAINT))
             painter.setPen(pen)
-            painter.drawPolyline(QPolygonF(points))
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], shown.astype(np.int8), [0]])))
-        for begin, end in edges.reshape(-1, 2):
-            run = QPolygonF(points[begin:end])
-            for pen in (QPen(self._casing, stroke.pen.widthF() + 2.5), stroke.pen):
-                painter.setPen(pen)
-                painter.drawPolyline(run)
+            painter.drawPath(drawn.faint)
+        for pen in (QPen(self._casing, stroke.pen.widthF() + 2.5), stroke.pen):
+            painter.setPen(pen)
+            painter.drawPath(drawn.full)
 
     def _draw_break(self, painter: QPainter, place: QPointF) -> None:
         """A disc with '!': the arm cannot do this while it grinds."""
@@ -131,6 +107,32 @@ class LinesItem(_InView):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class _Drawn:
+    """A line in pixels: where it is full, and all of it where it is faint somewhere."""
+
+    full: QPainterPath
+    faint: QPainterPath | None
+    smooth: bool
+
+
+def _drawn(stroke: Stroke, transform: QTransform, seen: QRectF) -> _Drawn:
+    """The visible part of a line, of the points that can be told apart."""
+    first = max(int(seen.left() - stroke.waypoint[0]) - 1, 0)
+    last = min(int(seen.right() - stroke.waypoint[0]) + 3, len(stroke.waypoint))
+    part = slice(first, max(last, first))
+    shown = stroke.shown[part]
+    x = transform.m11() * stroke.waypoint[part] + transform.dx()
+    y = transform.m22() * stroke.lean[part] + transform.dy() + stroke.shift
+    kept = drawn_points(x, y, np.flatnonzero(shown[1:] != shown[:-1]) + 1)
+    x, y, shown = x[kept], y[kept], shown[kept]
+    joined = np.zeros(len(kept), dtype=np.int32)
+    joined[:-1] = shown[:-1] & shown[1:]
+    full = pg.arrayToQPath(x, y, connect=joined)
+    faint = None if shown.all() else pg.arrayToQPath(x, y)
+    return _Drawn(full, faint, len(kept) <= SMOOTHED)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class LineName:
     """What a line is called, where it ends, and the pen it is drawn with."""
 
@@ -140,7 +142,7 @@ class LineName:
     pen: QPen
 
 
-class LineNamesItem(_InView):
+class LineNamesItem(InView):
     """Names of the lines at their visible ends, with a piece of the line before each."""
 
     SAMPLE = 22.0

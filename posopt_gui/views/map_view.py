@@ -25,6 +25,7 @@ from posopt_gui.views.map_pointing import Pointing
 from posopt_gui.views.map_shown import Shown
 from posopt_gui.views.map_widgets import LegendStrip
 from posopt_gui.views.map_wishes import Wishes
+from posopt_gui.views.refresh import Refresh
 from solver.model.settings import Scheme
 from solver.transforms import FloatArray
 
@@ -90,8 +91,8 @@ class MapView(QWidget):
         session.hover_changed.connect(self.overlays.show_edges)
         session.planning_changed.connect(self._on_planning)
         session.progress.connect(self._on_progress)
-        session.look.language_changed.connect(self.retranslate)
-        session.look.theme_changed.connect(self.retheme)
+        session.look.language_changed.connect(Refresh(session, self.retranslate, self).next_turn)
+        session.look.theme_changed.connect(Refresh(session, self.retheme, self).next_turn)
         header.layer_changed.connect(self._show_page)
         header.choice_changed.connect(self._show_page)
         header.lines_changed.connect(self._on_lines)

@@ -37,10 +37,17 @@ from posopt_gui.views.shell_parts import ElidedLabel
 CHIP = 13.0
 GAP = 16.0
 ROW = 22.0
-BAR_WIDTH = 240.0
+BAR_WIDTH, NARROW_BAR = 240.0, 160.0
+"""Length of a colour bar [px], and in a legend that is narrower than `NARROW`."""
+
+NARROW = 800
+
+BAR_FOOT = 27.0
+"""Height of a bar with the numbers below it [px]."""
+
 MARGIN = 8.0
 LEAST_HEIGHT = 28
-NOTICE_ROOM = 220.0
+NOTICE_ROOM = 250.0
 """Least width [px] that the legend leaves a notice in one of its rows."""
 
 
@@ -118,15 +125,21 @@ class LegendStrip(QWidget):
         y, left = min(ends.items(), key=lambda one: (one[1], one[0]))
         room = self.width() - MARGIN - left
         if room < NOTICE_ROOM:
-            y, left = max(ends) + (ROW if self._chips else 0.0), self._bar_end()
+            # A whole row: below the chips, and below the numbers of a bar.
+            y, left = max(ends) + (ROW if self._chips else 0.0), MARGIN
+            y = max(y, BAR_FOOT) if self._bar is not None else y
             room = self.width() - MARGIN - left
         return QRectF(left, y, max(room, 80.0), ROW)
+
+    def _bar_width(self) -> float:
+        return BAR_WIDTH if self.width() >= NARROW else NARROW_BAR
 
     def _bar_end(self) -> float:
         if self._bar is None:
             return MARGIN
         metrics = QFontMetricsF(self._font())
-        return MARGIN + metrics.horizontalAdvance(self._bar.title) + 8.0 + BAR_WIDTH + 2.0 * GAP
+        title = metrics.horizontalAdvance(self._bar.title)
+        return MARGIN + title + 8.0 + self._bar_width() + 1.5 * GAP
 
     def _chip_width(self, chip: Chip) -> float:
         return CHIP + 5.0 + QFontMetricsF(self._font()).horizontalAdvance(chip.text)
@@ -175,7 +188,7 @@ class LegendStrip(QWidget):
         painter.setPen(self._text)
         title = metrics.horizontalAdvance(bar.title)
         painter.drawText(QPointF(MARGIN, 15.0), bar.title)
-        box = QRectF(MARGIN + title + 10.0, 2.0, BAR_WIDTH, 10.0)
+        box = QRectF(MARGIN + title + 10.0, 2.0, self._bar_width(), 10.0)
         colours = bar.table[FIRST_INDEX:]
         row = np.ascontiguousarray((colours[::-1] if bar.scale.reverse else colours)[None])
         image = QImage(row.data, row.shape[1], 1, 4 * row.shape[1], QImage.Format.Format_RGBA8888)
@@ -184,9 +197,14 @@ class LegendStrip(QWidget):
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawRect(box)
         painter.setPen(self._text)
-        for tick in bar.scale.ticks():
+        free = box.left() - 30.0
+        for tick in sorted(bar.scale.ticks(), key=lambda one: one.share):
             x = box.left() + tick.share * box.width()
             painter.drawLine(QPointF(x, box.bottom()), QPointF(x, box.bottom() + 3.0))
+            half = metrics.horizontalAdvance(tick.text) / 2.0
+            if x - half < free:
+                continue
+            free = x + half + 4.0
             words = QRectF(x - 30.0, box.bottom() + 3.0, 60.0, 12.0)
             painter.drawText(words, Qt.AlignmentFlag.AlignCenter, tick.text)
         if bar.scale.low < bar.scale.mark < bar.scale.high:

@@ -37,6 +37,10 @@ class Refresh(QObject):
         else:
             self._ask()
 
+    def next_turn(self, *_: object) -> None:
+        """Refresh in the next turns, whatever is dragged."""
+        self._ask()
+
     def _ask(self) -> None:
         self._rest.stop()
         self._session.turns.ask(self._key, self._work)

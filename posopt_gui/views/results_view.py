@@ -128,8 +128,8 @@ class ResultsView(QWidget):
         session.check_changed.connect(Refresh(session, self._on_check, self).soon)
         session.message.connect(self._on_said)
         session.stale_changed.connect(self._on_stale)
-        session.look.language_changed.connect(self.retranslate)
-        session.look.theme_changed.connect(self.retheme)
+        session.look.language_changed.connect(Refresh(session, self.retranslate, self).next_turn)
+        session.look.theme_changed.connect(Refresh(session, self.retheme, self).next_turn)
 
     def retranslate(self) -> None:
         """Set all texts again."""

@@ -39,10 +39,13 @@ SOLID = {
     GL.GL_CULL_FACE: True,
     GL.GL_POLYGON_OFFSET_FILL: True,
     # Solids stand back a little, so that lines on them are not broken.
-    "glPolygonOffset": (1.0, 1.0),
+    "glPolygonOffset": (2.0, 2.0),
 }
 FLAT = {**SOLID, GL.GL_CULL_FACE: False, "glPolygonOffset": (3.0, 3.0)}
 SEE_THROUGH = {
+    # Before a solid with the same face, so that they do not flicker, and behind their edges.
+    GL.GL_POLYGON_OFFSET_FILL: True,
+    "glPolygonOffset": (1.0, 1.0),
     GL.GL_DEPTH_TEST: True,
     GL.GL_BLEND: True,
     GL.GL_CULL_FACE: True,

@@ -53,6 +53,7 @@ class SceneView(QWidget):
         self._failure = ""
         self._fitted = self._fitted_to_plan = False
         self._fitted_camera: Camera | None = None
+        self._refit = Refresh(session, self.fit, self)
         self._pool = JobThreads(1, self)
         self._cells = JobLine(self._pool, self)
         self._cells.done.connect(self._cell_built)
@@ -88,8 +89,8 @@ class SceneView(QWidget):
         session.place_changed.connect(self._on_place)
         session.kept_changed.connect(self._on_place)
         self._ghost = SceneGhost(session, self, self._looked)
-        session.look.language_changed.connect(self.retranslate)
-        session.look.theme_changed.connect(self.retheme)
+        session.look.language_changed.connect(Refresh(session, self.retranslate, self).next_turn)
+        session.look.theme_changed.connect(Refresh(session, self.retheme, self).next_turn)
         tools.preset_chosen.connect(self.look_from)
         tools.fit_asked.connect(self.fit)
         tools.picture_asked.connect(self._ask_picture)
@@ -378,7 +379,7 @@ class SceneView(QWidget):
         if self._canvas is not None and fitted_before is not None:
             seen = self._canvas.camera
             if seen.same_as(fitted_before):
-                QTimer.singleShot(0, self, self.fit)
+                self._refit.next_turn()
 
     def _lay_out(self) -> None:
         self._tools.fit_into(self.width() - 16)

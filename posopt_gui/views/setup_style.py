@@ -28,6 +28,7 @@ QComboBox QLineEdit, QAbstractSpinBox QLineEdit {{ border: none; padding: 0; }}
 QLineEdit[wrong="true"], QAbstractSpinBox[wrong="true"], QComboBox[wrong="true"] {{
     border: 1px solid {theme.error}; }}
 QCheckBox[wrong="true"] {{ color: {theme.error}; }}
+QAbstractSpinBox[slim="true"] {{ padding-right: 8px; }}
 QAbstractSpinBox[slim="true"]::up-button, QAbstractSpinBox[slim="true"]::down-button {{
     width: 0; }}
 QAbstractSpinBox[slim="true"]::up-arrow, QAbstractSpinBox[slim="true"]::down-arrow {{

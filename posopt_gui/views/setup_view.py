@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 
 from posopt_gui.controllers.session import Session
 from posopt_gui.document.project import key_of_error
+from posopt_gui.style import of_all_themes
 from posopt_gui.viewmodels.cell_facts import Catalogue, in_mm
 from posopt_gui.viewmodels.cell_form import Form, cell_form
 from posopt_gui.viewmodels.error_words import error_words
@@ -25,6 +26,7 @@ from posopt_gui.viewmodels.path_words import path_words
 from posopt_gui.viewmodels.project_files import kept_files, key_of_file, path_file
 from posopt_gui.views.beam_drawing_view import BeamDrawingView
 from posopt_gui.views.field_widgets import FieldRow
+from posopt_gui.views.refresh import Refresh
 from posopt_gui.views.setup_extras import FixtureList, PathFileBox, dropped_path_file
 from posopt_gui.views.setup_fixtures import SetupFixtures
 from posopt_gui.views.setup_path import SetupPath
@@ -51,6 +53,7 @@ class SetupView(QWidget):
         super().__init__(parent)
         self.setObjectName("setup")
         self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
+        self.setStyleSheet(of_all_themes(setup_style))
         self.setAcceptDrops(True)
         self.setMinimumWidth(LEAST_WIDTH)
         self._session = session
@@ -72,8 +75,8 @@ class SetupView(QWidget):
         self._lay_out()
         session.state_changed.connect(self.refresh)
         session.problem_changed.connect(self._show_problem)
-        session.look.language_changed.connect(self.retranslate)
-        session.look.theme_changed.connect(self.retheme)
+        session.look.language_changed.connect(Refresh(session, self.retranslate, self).next_turn)
+        session.look.theme_changed.connect(Refresh(session, self.retheme, self).next_turn)
         self.retheme()
         # The catalogue takes a moment to load; the window is on screen before.
         QTimer.singleShot(0, self, self.refresh)
@@ -140,7 +143,6 @@ class SetupView(QWidget):
 
     def retheme(self) -> None:
         """Set every colour again."""
-        self.setStyleSheet(setup_style(self._session.look.theme))
         drawing = self._boxes["beam"].extra if "beam" in self._boxes else None
         if isinstance(drawing, BeamDrawingView):
             drawing.set_theme(self._session.look.theme)

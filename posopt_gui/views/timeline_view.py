@@ -20,6 +20,7 @@ from posopt_gui.controllers.playback import SPEEDS, PlaybackController
 from posopt_gui.controllers.session import Session
 from posopt_gui.views.place_slider import STEPS, ClickSlider, SliderRow
 from posopt_gui.views.quiet_editors import QuietCombo
+from posopt_gui.views.refresh import Refresh
 
 ICON = 20
 """Side of an icon [px]."""
@@ -170,8 +171,8 @@ class TimelineView(QWidget):
         playback.speed_changed.connect(self._on_speed)
         playback.loop_changed.connect(self._loop.setChecked)
         session.place_changed.connect(self._on_place)
-        session.look.language_changed.connect(self.retranslate)
-        session.look.theme_changed.connect(self.retheme)
+        session.look.language_changed.connect(Refresh(session, self.retranslate, self).next_turn)
+        session.look.theme_changed.connect(Refresh(session, self.retheme, self).next_turn)
 
     def retranslate(self) -> None:
         """Set all texts again."""

@@ -98,6 +98,9 @@ class TotalsStrip(QWidget):
         while len(self._names) < len(self._totals):
             self._add()
         columns = len(self._names) + 1
+        for column in range(columns):
+            # What stretched with fewer numbers would keep a gap behind its own.
+            self._grid.setColumnStretch(column, 0)
         self._grid.addWidget(self._empty, 0, columns)
         self._grid.addWidget(self._stale, 1, columns)
         self._grid.setColumnStretch(columns, 1)

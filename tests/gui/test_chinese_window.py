@@ -42,6 +42,7 @@ HTML = re.compile(r"<[^>]*>|&\w+;")
 def shared(qapp, tmp_path_factory):
     with opened(tmp_path_factory.mktemp("window"), CELLS / "groove_paper.toml") as made:
         made.session.look.set_language("zh_CN")
+        made.session.turns.finish()
         made.session.set_compared(tuple(Scheme))
         made.session.start()
         wait(lambda: made.session.report is not None)

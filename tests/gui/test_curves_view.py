@@ -17,7 +17,7 @@ def view(qtbot, planned):
 
 
 def line_of(plot, name):
-    return plot._curves[name].getOriginalDataset()
+    return plot._curves[name].points
 
 
 def test_each_joint_is_drawn_in_pendant_degrees_over_the_waypoint_numbers(view, planned):
@@ -139,9 +139,11 @@ def test_a_wish_moves_the_drawn_line(view, planned, qtbot):
 def test_language_and_theme_are_switched_in_place(view, planned):
     planned.look.set_language("zh_CN")
     planned.look.set_theme("dark")
+    planned.turns.finish()
     assert view.tabs.tabText(1) == "间隙"
     assert view.backgroundRole() is not None
     planned.look.set_language("en")
+    planned.turns.finish()
     assert view.tabs.tabText(1) == "Clearance"
 
 

@@ -10,6 +10,7 @@ from posopt_gui.controllers.report import picture_bytes, report_of
 from posopt_gui.dialogs.export_dialog import ExportDialog
 from posopt_gui.look import Look
 from posopt_gui.viewmodels.export_model import ExportForm, ExportStage, check_rows
+from posopt_gui.workers.turns import Turns
 from solver.io.ls_reader import read_program_file
 
 SETTLED = {ExportStage.REFUSED, ExportStage.PASSED, ExportStage.FAULT}
@@ -28,7 +29,7 @@ class StillSession(QObject):
 
     def __init__(self, result):
         super().__init__()
-        self.look = Look(parent=self)
+        self.look, self.turns = Look(parent=self), Turns(self)
         self.result = self.chosen_result = result
         self.sequence = result.sequence if result is not None else None
         self.answer, self.stale, self.planning = None, False, False
@@ -318,10 +319,12 @@ def test_language_and_theme_change_while_it_is_open(opened, settle, result):
     look = dialog._session.look
     look.set_language("zh_CN")
     look.set_theme("dark")
+    dialog._session.turns.finish()
     assert dialog.export_button.text() == "导出"
     assert dialog.checks.item(0, 0).text() == "通过"
     assert look.theme.surface in dialog.styleSheet()
     look.set_language("en")
+    dialog._session.turns.finish()
     assert dialog.export_button.text() == "Export"
     fields = (dialog.form.path, dialog.form.reason, dialog.form.clearance, dialog.form.tolerance)
     assert all(one.accessibleName() for one in (dialog.checks, dialog.preview, *fields))

@@ -344,6 +344,7 @@ def test_a_failed_writing_names_the_file(qtbot, small, dialog, monkeypatch):
     name = dialog.exporter.target().name
     for language, words in (("en", "cannot be written"), ("zh_CN", "无法写入")):
         small.look.set_language(language)
+        small.turns.finish()
         with qtbot.waitSignal(small.message, timeout=PATIENCE) as told:
             dialog.exporter.export()
         assert name in told.args[0].text

@@ -183,9 +183,11 @@ def test_the_front_does_not_depend_on_the_safety_distance_and_the_scheme(view, p
 def test_language_and_theme_are_switched_in_place(view, planned):
     planned.look.set_language("zh_CN")
     planned.look.set_theme("dark")
+    planned.turns.finish()
     assert view.plot._knee_name.toPlainText() == "拐点"
     assert view.plot.accessibleName() == "间隙与关节运动的权衡曲线"
     planned.look.set_language("en")
+    planned.turns.finish()
     assert view.knee_button.text() == "Take the knee"
 
 

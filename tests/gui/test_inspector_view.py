@@ -46,6 +46,22 @@ def test_it_follows_the_cursor_with_joints_and_every_filter(view, planned, qtbot
     assert {row[0] for row in view.filters.texts} == {"✓"}
 
 
+def test_joints_of_the_filters_stand_beside_their_names_so_that_the_totals_are_seen(
+    view, planned, qtbot
+):
+    planned.set_cursor(16)
+    qtbot.waitUntil(lambda: bool(view.filters.texts), timeout=30_000)
+    rows = {row[1].words: row[1] for row in view.filters._rows}
+    assert rows["Elbow"].beside == "J2+J3"
+    assert rows["Joint limits"].below == ""
+    # The bodies of the clearance stand above, once.
+    assert rows["Clearance"].below == ""
+    assert rows["Own bodies"].below != ""
+    view.resize(310, 672)
+    bottom = view.totals.mapTo(view.viewport(), view.totals.rect().topLeft()).y() + 60
+    assert bottom < view.viewport().height()
+
+
 def test_it_shows_why_the_hovered_candidate_is_rejected(view, planned, qtbot):
     outcome = planned.result.candidates.outcome
     waypoint, orientation, slot = map(int, np.argwhere(outcome == Outcome.COLLISION)[0])
@@ -91,7 +107,7 @@ def test_without_any_sequence_it_says_which_constraint_where_and_what_to_try(vie
     qtbot.waitUntil(lambda: planned.plan_error is not None, timeout=60_000)
     words = view.trouble.text()
     assert "50 waypoints have no feasible pose" in words
-    assert "spindle against flange bottom" in words
+    assert "spindle against lower flange" in words
     assert "Try a wider lean range" in words
     assert view.title.text() == "No pose"
 
@@ -107,6 +123,7 @@ def test_a_wrong_input_leads_to_its_field(view, planned, qtbot):
 def test_it_speaks_chinese(view, planned):
     planned.look.set_language("zh_CN")
     planned.look.set_theme("dark")
+    planned.turns.finish()
     assert view.title.text() == "路径点 1/50"
     assert view.verdict.text() == "可行"
 

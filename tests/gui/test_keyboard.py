@@ -105,8 +105,10 @@ def path_of(widget):
 @pytest.mark.parametrize("language", ["en", "zh_CN"])
 def test_every_control_has_an_accessible_name_or_a_text(window, top, language):
     window.session.look.set_language(language)
+    window.session.turns.finish()
     nameless = [path_of(one) for one in controls_of(top) if not name_of(one).strip()]
     window.session.look.set_language("en")
+    window.session.turns.finish()
     assert nameless == []
 
 

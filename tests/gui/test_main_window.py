@@ -4,6 +4,7 @@ import gc
 import sys
 import time
 from collections import Counter
+from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QEvent, QObject, QSettings, Qt, QUrl
@@ -56,6 +57,7 @@ def window(shared):
         document.undo()
     shared.session.look.set_language("en")
     shared.session.look.set_theme("light")
+    shared.session.turns.finish()
     settle(shared)
 
 
@@ -97,6 +99,7 @@ def test_every_action_has_words_and_a_tip_in_both_languages(window):
         assert spec.tip in known, spec.tip
     for language in ("zh_CN", "en"):
         window.session.look.set_language(language)
+        window.session.turns.finish()
         for action in window.actions_table.by_name.values():
             assert action.text()
             assert action.toolTip()
@@ -259,6 +262,7 @@ def test_language_and_theme_reach_everything_and_leave_nothing_behind(window):
 
     before = there_and_back()
     look.set_language("zh_CN")
+    window.session.turns.finish()
     assert window.actions_table["plan"].text() == texts("zh_CN")["Plan"]
     assert window.tabs.tabText(0) == texts("zh_CN")["Curves"]
     assert window.tabs.tabText(1) == texts("zh_CN")["Results"]
@@ -394,3 +398,18 @@ def test_the_gap_meter_sees_a_blocked_event_loop(qapp):
     gaps.stop()
     assert gaps.longest >= 0.08
     assert gaps.count >= 1
+
+
+def test_programs_are_proposed_where_the_last_project_lies(window, tmp_path):
+    window.show_export()
+    exporter = window.export_dialog().exporter
+    wait(lambda: exporter.form.path)
+    other = tmp_path / "other"
+    other.mkdir()
+    assert Path(exporter.form.path).parent != other
+    window.export_dialog().close()
+    person(window).name = str(other / "kept.posopt")
+    assert window.files.save_as()
+    window.show_export()
+    assert Path(exporter.form.path).parent == other
+    window.export_dialog().close()

@@ -110,5 +110,6 @@ def test_nothing_is_listed_before_a_plan_and_languages_can_be_switched(qtbot, se
     made.show()
     session.look.set_language("zh_CN")
     session.look.set_theme("dark")
+    session.turns.finish()
     assert made.model.rowCount() == 0
     assert made.totals._empty.text() == "还没有规划结果。"

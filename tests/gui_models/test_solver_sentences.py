@@ -8,9 +8,11 @@ from pathlib import Path
 import pytest
 
 import solver
+from posopt_gui.document.project_file import read_project
 from posopt_gui.i18n import translated
 from posopt_gui.viewmodels.check_sentences import sentence
 from solver.candidates.outcomes import Outcome
+from solver.errors import InputError
 
 ROOT = Path(solver.__file__).parent
 
@@ -215,7 +217,7 @@ def test_the_numbers_of_a_sentence_stay_in_it():
 @pytest.mark.parametrize(
     ("text", "shown"),
     [
-        ("expected at least 0 in mm, found -5.0", "应为不小于 0（mm），实际为-5.0"),
+        ("expected at least 10 in mm, found 5.0", "应为不小于 10（mm），实际为 5.0"),
         (
             "the file holds no rows, expected a header and two or more points",
             "文件没有数据行，应有标题行和至少两个点",
@@ -236,3 +238,29 @@ def test_a_blank_stands_between_chinese_and_the_place_in_a_program():
         "at MY_GROOVE.LS:39", lambda text, **inside: translated("zh_CN", text).format(**inside)
     )
     assert said == "位于 MY_GROOVE.LS:39"
+
+
+def test_a_blank_stands_between_the_place_in_a_program_and_chinese():
+    assert sentence("on the way to GROOVE.LS:94", chinese) == "前往 GROOVE.LS:94 途中"
+
+
+@pytest.mark.parametrize(
+    ("data", "shown"),
+    [
+        (b"", "文件到此结束，此处还应有值，可能不完整"),
+        (b"{a: 1}", "此处为 'a'，应为双引号中的名称 或 }"),
+        (b'{"a": 1, "a": 2}', "成员 'a' 重复，只应出现一次"),
+        (b'{"a": tru}', "此处为 'tru'，应为 -12.5 之类的数或其他 JSON 值"),
+        (b'{"a": [1, 2}', "此处为 '}'，应先结束 '['"),
+        (b'{"a": 1e999}', "数 '1e999' 过大，应为有限数"),
+        (b'{"a": "b', "文本不完整或含控制字符，应有右引号"),
+        (b"{} x", "此处为 'x'，应为文件末尾"),
+        (b"[" * 50, "数组与对象嵌套过深，最多 32 层"),
+        (b"{}\0", "含 NUL 字节，是二进制数据，应为文本"),
+    ],
+)
+def test_what_is_wrong_with_a_project_file_is_said_in_chinese(data, shown):
+    with pytest.raises(InputError) as refused:
+        read_project(data, "work.posopt")
+    said = sentence(refused.value.message, chinese).replace("\N{MINUS SIGN}", "-")
+    assert said == f"不是完整的 posopt 项目文件（{shown}）"
